@@ -1,0 +1,62 @@
+// Vectors and rotations: glm's double types under the names that the house uses, and the few conversions
+// that everyone needs. SI units, right-handed, Z up; a quaternion's parts are named x y z w.
+#pragma once
+
+#include <cmath>
+
+#include <glm/geometric.hpp>
+#include <glm/gtc/quaternion.hpp>
+#include <glm/mat3x3.hpp>
+#include <glm/vec3.hpp>
+
+namespace limber {
+
+using Vec3 = glm::dvec3;
+/// Unit quaternion. Beware: glm's constructor takes w first; use quat_xyzw().
+using Quat = glm::dquat;
+using Mat3 = glm::dmat3;
+
+inline constexpr double kPi = 3.14159265358979323846;
+
+inline Quat quat_xyzw(double x, double y, double z, double w) { return Quat(w, x, y, z); }
+inline Quat quat_identity() { return Quat(1, 0, 0, 0); }
+inline Quat quat_axis(const Vec3& unit_axis, double angle) { return glm::angleAxis(angle, unit_axis); }
+
+/// Rotation Rz(z)·Ry(y)·Rx(x): fixed axes, roll-pitch-yaw as URDF has it, radians.
+inline Quat quat_euler(double x, double y, double z) {
+  return quat_axis({0, 0, 1}, z) * quat_axis({0, 1, 0}, y) * quat_axis({1, 0, 0}, x);
+}
+
+/// The inverse of quat_euler: x and z in (-pi, pi], y in [-pi/2, pi/2].
+inline Vec3 euler_of(const Quat& q) {
+  const Mat3 m = glm::mat3_cast(q);
+  const double sin_y = -m[0][2];
+  const double y = std::asin(sin_y > 1 ? 1 : (sin_y < -1 ? -1 : sin_y));
+  return {std::atan2(m[1][2], m[2][2]), y, std::atan2(m[0][1], m[0][0])};
+}
+
+/// Unit vector along v; the zero vector stays zero, so no NaN is born here.
+inline Vec3 normalized(const Vec3& v) {
+  const double length = glm::length(v);
+  return length > 0 ? v / length : Vec3(0);
+}
+
+inline bool is_finite(const Vec3& v) { return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z); }
+inline bool is_finite(const Quat& q) {
+  return std::isfinite(q.x) && std::isfinite(q.y) && std::isfinite(q.z) && std::isfinite(q.w);
+}
+
+/// A rigid transform: first rotate, then shift.
+struct Pose {
+  Vec3 position{0, 0, 0};
+  Quat rotation = quat_identity();
+
+  Pose operator*(const Pose& b) const { return {position + rotation * b.position, rotation * b.rotation}; }
+  Vec3 operator*(const Vec3& v) const { return position + rotation * v; }
+  Pose inverse() const {
+    const Quat r = glm::conjugate(rotation);
+    return {r * -position, r};
+  }
+};
+
+}  // namespace limber
