@@ -26,7 +26,7 @@ struct Arg {
 };
 
 struct Message {
-  std::string address;     ///< Starts with '/'; may hold OSC patterns when it comes in.
+  std::string address;  ///< Starts with '/'; may hold OSC patterns when it comes in.
   std::vector<Arg> args;
 };
 
@@ -35,7 +35,7 @@ enum class Hand : std::uint8_t { osc, command_line, console, panel, script };
 
 struct Origin {
   Hand hand = Hand::osc;
-  std::uint32_t ip = 0;    ///< IPv4 in host order; 0: no address to answer to.
+  std::uint32_t ip = 0;  ///< IPv4 in host order; 0: no address to answer to.
   std::uint16_t port = 0;
 };
 

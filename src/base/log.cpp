@@ -1,0 +1,64 @@
+// The log's ring and its line to stderr.
+#include "base/log.h"
+
+#include <array>
+#include <cstdio>
+#include <mutex>
+
+#include "base/text.h"
+
+namespace limber {
+
+namespace {
+
+constexpr std::size_t kRing = 1000;
+
+struct Log {
+  std::mutex mutex;
+  std::array<LogLine, kRing> ring;
+  std::uint64_t count = 0;
+  std::array<std::uint64_t, 3> per_level{};
+  bool to_stderr = true;
+};
+
+Log& the_log() {
+  static Log log;
+  return log;
+}
+
+}  // namespace
+
+void log_line(LogLevel level, std::string_view text) {
+  const std::string shown = printable(text);
+  Log& log = the_log();
+  const std::scoped_lock lock(log.mutex);
+  log.count++;
+  log.per_level[static_cast<std::size_t>(level)]++;
+  log.ring[log.count % kRing] = {log.count, level, shown};
+  if (!log.to_stderr) return;
+  const char* mark = level == LogLevel::error ? "error: " : level == LogLevel::warning ? "warning: " : "";
+  std::fprintf(stderr, "limber: %s%s\n", mark, shown.c_str());
+}
+
+std::vector<LogLine> log_since(std::uint64_t seen) {
+  Log& log = the_log();
+  const std::scoped_lock lock(log.mutex);
+  const std::uint64_t oldest = log.count > kRing ? log.count - kRing : 0;
+  std::vector<LogLine> lines;
+  for (std::uint64_t i = std::max(seen, oldest) + 1; i <= log.count; i++) lines.push_back(log.ring[i % kRing]);
+  return lines;
+}
+
+std::uint64_t log_count(LogLevel level) {
+  Log& log = the_log();
+  const std::scoped_lock lock(log.mutex);
+  return log.per_level[static_cast<std::size_t>(level)];
+}
+
+void log_to_stderr(bool on) {
+  Log& log = the_log();
+  const std::scoped_lock lock(log.mutex);
+  log.to_stderr = on;
+}
+
+}  // namespace limber

@@ -1,0 +1,46 @@
+// The log: lines to stderr, and the last thousand kept in a ring for whoever shows them.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include <fmt/format.h>
+
+namespace limber {
+
+enum class LogLevel : std::uint8_t { info, warning, error };
+
+struct LogLine {
+  std::uint64_t number = 0;  ///< Counts from 1 over the run, so that a reader knows what it has seen.
+  LogLevel level = LogLevel::info;
+  std::string text;
+};
+
+/// Writes one line to stderr and to the ring. Control characters are shown escaped. [any]
+void log_line(LogLevel level, std::string_view text);
+
+/// The lines after `seen`, oldest first; at most the last 1000. [any]
+std::vector<LogLine> log_since(std::uint64_t seen);
+
+/// How many warnings and errors were said so far: `--strict` and tests ask. [any]
+std::uint64_t log_count(LogLevel level);
+
+/// Silences stderr (the ring still hears): for tests and `--quiet`. [any]
+void log_to_stderr(bool on);
+
+template <class... A>
+void log_info(fmt::format_string<A...> f, A&&... a) {
+  log_line(LogLevel::info, fmt::format(f, std::forward<A>(a)...));
+}
+template <class... A>
+void log_warning(fmt::format_string<A...> f, A&&... a) {
+  log_line(LogLevel::warning, fmt::format(f, std::forward<A>(a)...));
+}
+template <class... A>
+void log_error(fmt::format_string<A...> f, A&&... a) {
+  log_line(LogLevel::error, fmt::format(f, std::forward<A>(a)...));
+}
+
+}  // namespace limber

@@ -1,0 +1,72 @@
+// Seeded generators: one per node, derived from the world's seed and the node's name, so that a run repeats.
+#pragma once
+
+#include <array>
+#include <bit>
+#include <cmath>
+#include <cstdint>
+#include <string_view>
+
+#include "base/vec.h"
+
+namespace limber {
+
+/// One step of splitmix64 (Steele, Lea, Flood 2014): spreads a seed over all 64 bits.
+constexpr std::uint64_t splitmix64(std::uint64_t& state) {
+  state += 0x9e3779b97f4a7c15u;
+  std::uint64_t z = state;
+  z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9u;
+  z = (z ^ (z >> 27)) * 0x94d049bb133111ebu;
+  return z ^ (z >> 31);
+}
+
+/// 64-bit FNV-1a over bytes; `start` chains several.
+constexpr std::uint64_t hash_bytes(std::string_view bytes, std::uint64_t start = 0xcbf29ce484222325u) {
+  for (const char c : bytes) start = (start ^ static_cast<unsigned char>(c)) * 0x100000001b3u;
+  return start;
+}
+
+/// xoshiro256** (Blackman, Vigna 2018).
+class Random {
+ public:
+  explicit Random(std::uint64_t seed = 1, std::string_view name = {}) {
+    std::uint64_t s = seed ^ hash_bytes(name);
+    for (std::uint64_t& word : state_) word = splitmix64(s);
+  }
+
+  std::uint64_t next() {
+    const std::uint64_t result = std::rotl(state_[1] * 5, 7) * 9;
+    const std::uint64_t t = state_[1] << 17;
+    state_[2] ^= state_[0];
+    state_[3] ^= state_[1];
+    state_[1] ^= state_[2];
+    state_[0] ^= state_[3];
+    state_[2] ^= t;
+    state_[3] = std::rotl(state_[3], 45);
+    return result;
+  }
+
+  /// Uniform in [0, 1).
+  double uniform() { return static_cast<double>(next() >> 11) * 0x1.0p-53; }
+  double uniform(double a, double b) { return a + uniform() * (b - a); }
+  /// Standard normal (Box, Muller 1958, one of the pair).
+  double normal() {
+    const double u = 1 - uniform();
+    return std::sqrt(-2 * std::log(u)) * std::cos(2 * kPi * uniform());
+  }
+  /// Uniform on the unit sphere (Archimedes: z is uniform).
+  Vec3 direction() {
+    const double z = uniform(-1, 1);
+    const double angle = uniform(0, 2 * kPi);
+    const double r = std::sqrt(1 - z * z);
+    return {r * std::cos(angle), r * std::sin(angle), z};
+  }
+
+  /// For the state hash and for takes.
+  const std::array<std::uint64_t, 4>& state() const { return state_; }
+
+ private:
+  std::array<std::uint64_t, 4> state_{};
+};
+
+}  // namespace limber

@@ -1,0 +1,267 @@
+// Text from outside: names, patterns, numbers.
+#include "base/text.h"
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <numeric>
+
+#include <fmt/format.h>
+
+namespace limber {
+
+namespace {
+
+char lower(char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; }
+
+constexpr int kMaxSteps = 20000;
+
+// one [..] class at pattern[i]; gives whether c is in it and moves i behind it; a missing ']' makes it no class
+bool class_match(std::string_view pattern, std::size_t& i, char c, bool& malformed) {
+  const std::size_t end = pattern.find(']', i + 1);
+  if (end == std::string_view::npos) {
+    malformed = true;
+    return false;
+  }
+  std::size_t k = i + 1;
+  const bool negated = k < end && pattern[k] == '!';
+  if (negated) k++;
+  bool in = false;
+  for (; k < end; k++) {
+    if (k + 2 < end && pattern[k + 1] == '-') {
+      in = in || (pattern[k] <= c && c <= pattern[k + 2]);
+      k += 2;
+    } else {
+      in = in || pattern[k] == c;
+    }
+  }
+  i = end + 1;
+  return in != negated;
+}
+
+struct Matcher {
+  int steps = 0;
+
+  bool match(std::string_view p, std::string_view s) {
+    std::size_t i = 0;
+    std::size_t k = 0;
+    while (i < p.size()) {
+      if (++steps > kMaxSteps) return false;
+      if (p[i] == '*') return star(p.substr(i + 1), s.substr(k));
+      if (p[i] == '{') return braces(p, i, s.substr(k));
+      if (k >= s.size()) return false;
+      if (p[i] == '?') {
+        i++;
+      } else if (p[i] == '[') {
+        bool malformed = false;
+        const bool in = class_match(p, i, s[k], malformed);
+        if (malformed || !in) return false;
+      } else if (p[i++] != s[k]) {
+        return false;
+      }
+      k++;
+    }
+    return k == s.size();
+  }
+
+  bool star(std::string_view rest, std::string_view s) {
+    for (std::size_t k = 0; k <= s.size() && steps <= kMaxSteps; k++) {
+      if (match(rest, s.substr(k))) return true;
+    }
+    return false;
+  }
+
+  bool braces(std::string_view p, std::size_t i, std::string_view s) {
+    const std::size_t end = p.find('}', i);
+    if (end == std::string_view::npos) return false;
+    for (const std::string_view choice : split(p.substr(i + 1, end - i - 1), ',')) {
+      if (s.substr(0, choice.size()) == choice && match(p.substr(end + 1), s.substr(choice.size()))) return true;
+    }
+    return false;
+  }
+};
+
+// bytes of a whole UTF-8 character at the start of s, or 0 where it is broken
+std::size_t utf8_length(std::string_view s) {
+  const auto byte = [&](std::size_t i) { return static_cast<unsigned char>(s[i]); };
+  const unsigned char a = byte(0);
+  const std::size_t n = a < 0x80                  ? 1
+                        : (a >= 0xc2 && a < 0xe0) ? 2
+                        : (a >= 0xe0 && a < 0xf0) ? 3
+                        : (a >= 0xf0 && a < 0xf5) ? 4
+                                                  : 0;
+  if (n == 0 || s.size() < n) return 0;
+  for (std::size_t i = 1; i < n; i++) {
+    if ((byte(i) & 0xc0) != 0x80) return 0;
+  }
+  if (a == 0xe0 && byte(1) < 0xa0) return 0;
+  if (a == 0xed && byte(1) >= 0xa0) return 0;
+  if (a == 0xf0 && byte(1) < 0x90) return 0;
+  if (a == 0xf4 && byte(1) >= 0x90) return 0;
+  return n;
+}
+
+std::size_t edit_distance(std::string_view a, std::string_view b) {
+  std::vector<std::size_t> row(b.size() + 1);
+  std::iota(row.begin(), row.end(), std::size_t{0});
+  for (std::size_t i = 1; i <= a.size(); i++) {
+    std::size_t diagonal = row[0];
+    row[0] = i;
+    for (std::size_t k = 1; k <= b.size(); k++) {
+      const std::size_t changed = diagonal + (lower(a[i - 1]) == lower(b[k - 1]) ? 0 : 1);
+      diagonal = row[k];
+      row[k] = std::min({row[k] + 1, row[k - 1] + 1, changed});
+    }
+  }
+  return row[b.size()];
+}
+
+constexpr std::string_view kForbidden = " #*,/?[]{}%";
+
+int hex_digit(char c) {
+  if (c >= '0' && c <= '9') return c - '0';
+  const char l = lower(c);
+  return l >= 'a' && l <= 'f' ? l - 'a' + 10 : -1;
+}
+
+}  // namespace
+
+std::string plain_name(std::string_view name) {
+  std::string plain;
+  plain.reserve(name.size());
+  for (const char c : name) {
+    if (c != '_') plain.push_back(lower(c));
+  }
+  return plain;
+}
+
+bool same_name(std::string_view a, std::string_view b) {
+  std::size_t i = 0;
+  std::size_t k = 0;
+  while (true) {
+    while (i < a.size() && a[i] == '_') i++;
+    while (k < b.size() && b[k] == '_') k++;
+    if (i == a.size() || k == b.size()) return i == a.size() && k == b.size();
+    if (lower(a[i++]) != lower(b[k++])) return false;
+  }
+}
+
+bool is_pattern(std::string_view name) { return name.find_first_of("?*[{") != std::string_view::npos; }
+
+bool pattern_match(std::string_view pattern, std::string_view name) {
+  if (!is_pattern(pattern)) return pattern == name;
+  return pattern == name || Matcher{}.match(pattern, name);
+}
+
+std::string_view nearest_name(std::string_view written, std::span<const std::string_view> names) {
+  if (written.size() > 256) return {};
+  const std::size_t allowed = std::max<std::size_t>(1, written.size() / 3);
+  std::string_view best;
+  std::size_t best_distance = allowed + 1;
+  for (const std::string_view name : names) {
+    if (name.size() > written.size() + allowed || written.size() > name.size() + allowed) continue;
+    const std::size_t distance = edit_distance(written, name);
+    if (distance < best_distance) {
+      best = name;
+      best_distance = distance;
+    }
+  }
+  return best;
+}
+
+std::string name_hint(std::string_view written, std::span<const std::string_view> names) {
+  if (names.empty()) return "; there is none";
+  const std::string_view near = nearest_name(written, names);
+  if (!near.empty()) return fmt::format("; did you mean '{}'?", near);
+  const std::size_t shown = std::min<std::size_t>(names.size(), 8);
+  return fmt::format("; there are: {}{}",
+                     fmt::join(names.begin(), names.begin() + static_cast<std::ptrdiff_t>(shown), ", "),
+                     shown < names.size() ? " …" : "");
+}
+
+std::string name_hint(std::string_view written, const std::vector<std::string>& names) {
+  const std::vector<std::string_view> views(names.begin(), names.end());
+  return name_hint(written, std::span<const std::string_view>(views));
+}
+
+std::string printable(std::string_view text) {
+  std::string shown;
+  shown.reserve(text.size());
+  for (std::size_t i = 0; i < text.size();) {
+    const auto byte = static_cast<unsigned char>(text[i]);
+    const std::size_t n = utf8_length(text.substr(i));
+    const bool control = (byte < 0x20 && byte != '\n' && byte != '\t') || byte == 0x7f ||
+                         (n == 2 && byte == 0xc2 && static_cast<unsigned char>(text[i + 1]) < 0xa0);
+    if (n == 0 || control) {
+      shown += fmt::format("\\x{:02x}", byte);
+      i++;
+    } else {
+      shown.append(text.substr(i, n));
+      i += n;
+    }
+  }
+  return shown;
+}
+
+std::optional<double> parse_number(std::string_view text) {
+  const auto blank = [](char c) { return c == ' ' || c == '\t' || c == '\n' || c == '\r'; };
+  while (!text.empty() && blank(text.front())) text.remove_prefix(1);
+  while (!text.empty() && blank(text.back())) text.remove_suffix(1);
+  if (text.size() > 1 && text.front() == '+' && text[1] != '-' && text[1] != '+') text.remove_prefix(1);
+  double value = 0;
+  const auto [end, fault] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (fault != std::errc() || end != text.data() + text.size() || !std::isfinite(value)) return {};
+  return value;
+}
+
+std::string number_text(double value) { return fmt::format("{}", value); }
+
+std::string escape_name(std::string_view name) {
+  std::string part;
+  for (const char c : name) {
+    if (kForbidden.find(c) != std::string_view::npos) {
+      part += fmt::format("%{:02X}", static_cast<unsigned char>(c));
+    } else {
+      part.push_back(c);
+    }
+  }
+  return part;
+}
+
+std::string unescape_name(std::string_view part) {
+  std::string name;
+  for (std::size_t i = 0; i < part.size(); i++) {
+    const int high = part[i] == '%' && i + 2 < part.size() ? hex_digit(part[i + 1]) : -1;
+    const int low = high >= 0 ? hex_digit(part[i + 2]) : -1;
+    if (low >= 0) {
+      name.push_back(static_cast<char>(high * 16 + low));
+      i += 2;
+    } else {
+      name.push_back(part[i]);
+    }
+  }
+  return name;
+}
+
+std::optional<std::string> name_fault(std::string_view name) {
+  if (name.empty()) return "a name must not be empty";
+  if (name.size() > 128) return fmt::format("a name may be 128 bytes long, this one has {}", name.size());
+  if (printable(name) != name || name.find_first_of("\n\t") != std::string_view::npos) {
+    return fmt::format("the name '{}' holds characters that can't be printed", printable(name));
+  }
+  return {};
+}
+
+std::vector<std::string_view> split(std::string_view text, char separator) {
+  std::vector<std::string_view> pieces;
+  std::size_t start = 0;
+  for (std::size_t i = 0; i <= text.size(); i++) {
+    if (i == text.size() || text[i] == separator) {
+      pieces.push_back(text.substr(start, i - start));
+      start = i + 1;
+    }
+  }
+  return pieces;
+}
+
+}  // namespace limber
