@@ -18,8 +18,10 @@ class Latest {
 
   /// A value to fill: one that nobody reads any more, else a new one. Holds old content. [the writer]
   std::shared_ptr<T> spare() {
-    for (std::shared_ptr<T>& value : pool_) {
-      if (value.use_count() == 1) return value;
+    for (const std::shared_ptr<T>& value : pool_) {
+      // the copy's atomic increment also acquires what the last reader released; a bare use_count() would not
+      std::shared_ptr<T> mine = value;
+      if (mine.use_count() == 2) return mine;
     }
     pool_.push_back(std::make_shared<T>());
     return pool_.back();

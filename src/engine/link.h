@@ -1,0 +1,28 @@
+// EngineLink: everything that the outside may touch of a running engine. Commands in; snapshots, answers and the
+// plan of ports out; counters. All of it may be used from any thread.
+#pragma once
+
+#include <functional>
+#include <mutex>
+
+#include "base/inbox.h"
+#include "base/latest.h"
+#include "engine/command.h"
+#include "engine/snapshot.h"
+
+namespace limber {
+
+struct EngineLink {
+  Inbox<Command> inbox{65536};
+  Inbox<Outgoing> outbox{65536};
+  Latest<Snapshot> snapshots;
+  Latest<OscPlan> osc_plan;  ///< What the scene wishes; null until a scene has run, empty lists: it says nothing.
+  Counters counters;
+
+  /// Called after something was put into `outbox` or `osc_plan` (an eventfd of the network's, say). Set before start.
+  std::function<void()> wake_network = [] {};
+  /// Called after something was put into `inbox`, so that a paused engine need not poll. Set by the engine.
+  std::function<void()> wake_engine = [] {};
+};
+
+}  // namespace limber

@@ -1,0 +1,45 @@
+// Snapshot: a finished copy of everything that moves, published after each tick. Readers hold it as long as they like.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace limber {
+
+/// A body in a snapshot. Its joints stand in stream order.
+struct RosterBody {
+  std::string name;
+  bool enabled = true;
+  std::vector<std::string> joint_names;
+  std::vector<std::uint32_t> joints;  ///< Where each joint's block begins in Snapshot::live.
+  std::vector<std::uint32_t> parts;   ///< The same for parts.
+};
+
+/// Who is there. Made anew only when bodies come, go or change; shared by all snapshots in between.
+struct Roster {
+  std::vector<RosterBody> bodies;  ///< In the order in which they were made.
+};
+
+/// Offsets in a joint's or part's block of Snapshot::live, in numbers (from the classes' tables).
+struct LiveOffsets {
+  std::uint32_t joint_position = 0;  ///< 3: the joint's point on the parent's side, world, m.
+  std::uint32_t joint_rotation = 0;  ///< 4: x y z w of the child's joint frame, world.
+  std::uint32_t joint_relrot = 0;    ///< 3: R = Rz·Ry·Rx of the child's joint frame in the parent's, rad, unwrapped.
+  std::uint32_t joint_offsets = 0;   ///< 3: the child's shift along the parent's joint axes, m.
+  std::uint32_t part_position = 0;   ///< 3: link frame, world, m.
+  std::uint32_t part_rotation = 0;   ///< 4: x y z w.
+};
+const LiveOffsets& live_offsets();
+
+struct Snapshot {
+  std::uint64_t tick = 0;
+  double time = 0;   ///< Simulated seconds.
+  double speed = 1;  ///< Simulated seconds per real second, reached.
+  bool paused = false;
+  std::shared_ptr<const Roster> roster;
+  std::vector<double> live;  ///< States and readouts of every node, as the store has them.
+};
+
+}  // namespace limber
