@@ -1,0 +1,26 @@
+// Catalog: addresses to nodes and rows and back, by exact path or by OSC pattern. [sim]
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "params/store.h"
+
+namespace limber {
+
+/// A row of a node, or the node itself when `row` is null.
+struct Place {
+  NodeId node;
+  const Row* row = nullptr;
+};
+
+/// The place of an exact path such as "/physics/body/arm/part/tip/mass". Classes' and rows' names are compared by the
+/// one naming rule, names of things exactly (%20 style undone). The error names the part that fails and near names.
+Result<Place> find_place(const Store& store, std::string_view path);
+
+/// Every row that an OSC pattern reaches, in tree order: `?` `*` `[a-z]` `[!a]` `{a,b}` within a name, `//` any depth.
+/// At most `limit` places. An error only where the pattern is none.
+Result<std::vector<Place>> match_places(const Store& store, std::string_view pattern, std::size_t limit = 1000000);
+
+}  // namespace limber

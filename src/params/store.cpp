@@ -1,0 +1,223 @@
+// The store: nodes, blocks, the door, marks.
+#include "params/store.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include "base/check.h"
+#include "base/text.h"
+
+namespace limber {
+
+namespace {
+
+const Table& group_table() {
+  static const Table table("group", "", "", {});
+  return table;
+}
+
+}  // namespace
+
+Store::Store() {
+  slots_.push_back({1, table_number(group_table()), 0, 0});
+  nodes_.push_back({&group_table(), "", nullptr, {}, {}, 0});
+  root_ = {0, 1};
+  refresh_view();
+}
+
+std::uint32_t Store::table_number(const Table& table) {
+  const auto found = std::find(tables_.begin(), tables_.end(), &table);
+  if (found != tables_.end()) return static_cast<std::uint32_t>(found - tables_.begin());
+  tables_.push_back(&table);
+  return static_cast<std::uint32_t>(tables_.size() - 1);
+}
+
+void Store::refresh_view() {
+  view_ = {slots_.data(), kept_.data(), live_.data(), static_cast<std::uint32_t>(slots_.size())};
+}
+
+std::uint32_t Store::take_block(std::vector<double>& block, std::vector<std::vector<std::uint32_t>>& spare,
+                                std::uint32_t width) {
+  if (width < spare.size() && !spare[width].empty()) {
+    const std::uint32_t base = spare[width].back();
+    spare[width].pop_back();
+    return base;
+  }
+  const auto base = static_cast<std::uint32_t>(block.size());
+  block.resize(block.size() + width, 0.0);
+  return base;
+}
+
+NodeId Store::add(const Table& table, NodeId parent, std::string name, void* thing) {
+  LIMBER_CHECK(alive(parent) && child(parent, name).null());
+  std::uint32_t slot = 0;
+  if (free_slots_.empty()) {
+    slot = static_cast<std::uint32_t>(slots_.size());
+    slots_.emplace_back();
+    nodes_.emplace_back();
+  } else {
+    slot = free_slots_.back();
+    free_slots_.pop_back();
+  }
+  NodeSlot& s = slots_[slot];
+  s.generation++;  // even to odd: alive
+  s.table = table_number(table);
+  s.kept = take_block(kept_, spare_kept_, table.kept_width());
+  s.live = take_block(live_, spare_live_, table.live_width());
+  const NodeId id{slot, s.generation};
+  nodes_[slot] = {&table, name, thing, parent, {}, 0};
+  nodes_[parent.slot].children.push_back(id);
+  child_of_.emplace(ChildKey{parent.slot, std::move(name)}, id);
+  for (const Row& row : table.rows()) {
+    if (row.stored()) std::copy_n(row.initial.data(), row.width, slot_values(id, row));
+  }
+  mark_all(id);
+  kept_version_++;
+  structure_version_++;
+  refresh_view();
+  return id;
+}
+
+NodeId Store::add_group(NodeId parent, std::string name) {
+  return add(group_table(), parent, std::move(name), nullptr);
+}
+
+bool Store::is_group(NodeId id) const { return nodes_[id.slot].table == &group_table(); }
+
+void Store::release(NodeId id) {
+  for (const NodeId child : nodes_[id.slot].children) release(child);
+  Node& node = nodes_[id.slot];
+  NodeSlot& slot = slots_[id.slot];
+  child_of_.erase(child_of_.find(ChildKeyView{node.parent.slot, node.name}));
+  const auto give_back = [](std::vector<std::vector<std::uint32_t>>& spare, std::uint32_t base, std::uint32_t width) {
+    if (width == 0) return;
+    if (spare.size() <= width) spare.resize(width + 1);
+    spare[width].push_back(base);
+  };
+  // a freed block is zero, so that snapshots and hashes do not tell of the dead
+  std::fill_n(kept_.begin() + slot.kept, node.table->kept_width(), 0.0);
+  std::fill_n(live_.begin() + slot.live, node.table->live_width(), 0.0);
+  give_back(spare_kept_, slot.kept, node.table->kept_width());
+  give_back(spare_live_, slot.live, node.table->live_width());
+  slot.generation++;  // odd to even: gone
+  free_slots_.push_back(id.slot);
+  node = {};
+}
+
+void Store::remove(NodeId id) {
+  if (!alive(id) || id == root_) return;
+  std::vector<NodeId>& siblings = nodes_[nodes_[id.slot].parent.slot].children;
+  siblings.erase(std::find(siblings.begin(), siblings.end(), id));
+  release(id);
+  kept_version_++;
+  structure_version_++;
+}
+
+NodeId Store::child(NodeId parent, std::string_view name) const {
+  const auto found = child_of_.find(ChildKeyView{parent.slot, name});
+  return found == child_of_.end() ? NodeId{} : found->second;
+}
+
+std::string Store::path(NodeId id) const {
+  if (id == root_ || !alive(id)) return id == root_ ? "/" : "";
+  std::string path;
+  for (NodeId at = id; at != root_; at = nodes_[at.slot].parent) path = "/" + escape_name(nodes_[at.slot].name) + path;
+  return path;
+}
+
+Result<SetOutcome> Store::set(NodeId id, std::string_view row, std::span<const double> values) {
+  return set(id, table(id).at(row), values);
+}
+
+Result<SetOutcome> Store::set(NodeId id, const Row& row, std::span<const double> values) {
+  const auto where = [&] { return fmt::format("{}/{}", path(id), row.name); };
+  if (!alive(id)) return Error{"this thing no longer exists"};
+  if (!row.writable() || (row.view() && row.write == nullptr)) {
+    return Error{fmt::format("{} can be read, not set", where())};
+  }
+  if (values.size() != row.width) {
+    return Error{
+        fmt::format("{} takes {} number{}, not {}", where(), row.width, row.width == 1 ? "" : "s", values.size())};
+  }
+  std::array<double, 4> taken{};
+  SetOutcome outcome;
+  for (std::size_t i = 0; i < row.width; i++) {
+    double v = values[i];
+    if (!std::isfinite(v)) return Error{fmt::format("{} takes numbers; {} is none", where(), v)};
+    if (row.type == RowType::boolean || row.type == RowType::flags3) {
+      v = v >= 0.5 ? 1 : 0;
+    } else if (row.type == RowType::integer || row.type == RowType::choice) {
+      v = std::round(v);
+    }
+    taken[i] = std::clamp(v, row.min, row.max);
+    const bool flag = row.type == RowType::boolean || row.type == RowType::flags3;
+    if (!flag && taken[i] != v) outcome.clamped = true;
+  }
+  if (row.type == RowType::choice && outcome.clamped) {
+    return Error{
+        fmt::format("{} has the choices {}; {} is none of them", where(), fmt::join(row.choices, ", "), values[0])};
+  }
+  if (row.type == RowType::quat) {
+    const double length =
+        std::sqrt(taken[0] * taken[0] + taken[1] * taken[1] + taken[2] * taken[2] + taken[3] * taken[3]);
+    if (length < 1e-9) return Error{fmt::format("{} takes a rotation; 0 0 0 0 is none", where())};
+    for (double& v : taken) v /= length;
+  }
+  void* const the_thing = nodes_[id.slot].thing;
+  if (row.refuse != nullptr) {
+    if (const Result<void> may = row.refuse(the_thing, taken.data()); !may) {
+      return Error{fmt::format("{}: {}", where(), may.error())};
+    }
+  }
+  if (row.view()) {
+    row.write(the_thing, taken.data());
+    return outcome;
+  }
+  std::copy_n(taken.data(), row.width, slot_values(id, row));
+  if (!row.live) kept_version_++;
+  mark(id, row);
+  return outcome;
+}
+
+void Store::get(NodeId id, const Row& row, double* out) const {
+  if (row.view()) return row.read(nodes_[id.slot].thing, out);
+  if (row.stored()) std::copy_n(values(id, row), row.width, out);
+}
+
+void Store::mark(NodeId id, const Row& row) {
+  if (row.effect == nullptr) return;
+  Node& node = nodes_[id.slot];
+  if (node.marks == 0) marked_.push_back(id);
+  node.marks |= std::uint64_t{1} << row.index;
+}
+
+void Store::mark_all(NodeId id) {
+  for (const Row& row : nodes_[id.slot].table->rows()) mark(id, row);
+}
+
+void Store::apply_marks() {
+  // an effect may mark again (a view of a view): then once more, but not for ever
+  for (int round = 0; round < 4 && !marked_.empty(); round++) {
+    applying_.clear();
+    applying_.swap(marked_);
+    for (const NodeId id : applying_) {
+      if (!alive(id)) continue;
+      const std::uint64_t marks = std::exchange(nodes_[id.slot].marks, 0);
+      std::array<void (*)(void*), 64> done{};
+      std::size_t count = 0;
+      for (const Row& row : nodes_[id.slot].table->rows()) {
+        if ((marks >> row.index & 1u) == 0) continue;
+        if (std::find(done.begin(), done.begin() + static_cast<std::ptrdiff_t>(count), row.effect) !=
+            done.begin() + static_cast<std::ptrdiff_t>(count))
+          continue;
+        done[count++] = row.effect;
+        row.effect(nodes_[id.slot].thing);
+      }
+    }
+  }
+}
+
+}  // namespace limber

@@ -1,0 +1,171 @@
+// Store: every thing is a node of one tree, its values plain numbers in two flat blocks: kept (properties) and live
+// (states and readouts). One door writes: it refuses what is no number, clamps, writes and marks. [sim]
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <string>
+#include <string_view>
+#include <unordered_map>
+#include <vector>
+
+#include "base/id.h"
+#include "base/result.h"
+#include "params/table.h"
+
+namespace limber {
+
+/// What scripts read without a call: where a node's numbers are. Layout known to script/c_api.inc.
+struct NodeSlot {
+  std::uint32_t generation = 0;  ///< Odd: alive.
+  std::uint32_t table = 0;       ///< Number of its class in the order of first use.
+  std::uint32_t kept = 0;        ///< First number in the kept block.
+  std::uint32_t live = 0;        ///< First number in the live block.
+};
+
+/// The arrays behind the store; they move when nodes are added, so ask again through the same pointer.
+struct StoreView {
+  const NodeSlot* slots = nullptr;
+  const double* kept = nullptr;
+  const double* live = nullptr;
+  std::uint32_t slot_count = 0;
+};
+
+/// How a value was taken.
+struct SetOutcome {
+  bool clamped = false;
+};
+
+class Store {
+ public:
+  Store();
+
+  /// The root of the tree; it has no rows.
+  NodeId root() const { return root_; }
+
+  /// Adds a node under `parent`; values are the table's defaults, every effect is marked. `thing` is handed to the
+  /// rows' functions. Names among siblings must be unique: that is the caller's to check with child().
+  NodeId add(const Table& table, NodeId parent, std::string name, void* thing);
+  /// A node without rows, such as /physics/body.
+  NodeId add_group(NodeId parent, std::string name);
+  /// Removes the node and all below it.
+  void remove(NodeId id);
+
+  bool alive(NodeId id) const {
+    return id.slot < slots_.size() && slots_[id.slot].generation == id.generation && (id.generation & 1u) != 0;
+  }
+  const Table& table(NodeId id) const { return *nodes_[id.slot].table; }
+  const std::string& name(NodeId id) const { return nodes_[id.slot].name; }
+  void* thing(NodeId id) const { return nodes_[id.slot].thing; }
+  NodeId parent(NodeId id) const { return nodes_[id.slot].parent; }
+  std::span<const NodeId> children(NodeId id) const { return nodes_[id.slot].children; }
+  bool is_group(NodeId id) const;
+  /// The child of exactly that name, or a null id.
+  NodeId child(NodeId parent, std::string_view name) const;
+  /// The address of a node: "/physics/body/arm/part/tip". Formed when asked.
+  std::string path(NodeId id) const;
+
+  /// The door. Refuses NaN, infinities, a wrong count, a row that is not writable; clamps to the range; writes; marks.
+  /// A view's value goes to the rows behind it. Nothing of a refused value is applied.
+  Result<SetOutcome> set(NodeId id, const Row& row, std::span<const double> values);
+  Result<SetOutcome> set(NodeId id, std::string_view row, std::span<const double> values);
+
+  /// Reads a row (views are computed): `out` takes row.width numbers.
+  void get(NodeId id, const Row& row, double* out) const;
+
+  /// The numbers of a stored row, for the thing itself.
+  const double* values(NodeId id, const Row& row) const { return const_cast<Store*>(this)->slot_values(id, row); }
+  /// For the thing that tells a readout or a state: writes past the door, since nothing is to be brought into the
+  /// world.
+  double* tell(NodeId id, const Row& row) { return slot_values(id, row); }
+  double* live_block(NodeId id) { return live_.data() + slots_[id.slot].live; }
+  double* kept_block(NodeId id) {
+    kept_version_++;
+    return kept_.data() + slots_[id.slot].kept;
+  }
+  const double* kept_block(NodeId id) const { return kept_.data() + slots_[id.slot].kept; }
+
+  /// Marks a row as if it had been set.
+  void mark(NodeId id, const Row& row);
+  /// Marks every row that has an effect.
+  void mark_all(NodeId id);
+  /// Runs the effects of all marked rows, each function once a node, in the order in which nodes were marked.
+  void apply_marks();
+
+  std::span<const double> kept() const { return kept_; }
+  std::span<const double> live() const { return live_; }
+  /// Counts writes to kept values and changes of structure: copies are made anew when it has changed.
+  std::uint64_t kept_version() const { return kept_version_; }
+  std::uint64_t structure_version() const { return structure_version_; }
+  const StoreView* view() const { return &view_; }
+  std::uint32_t table_number(const Table& table);
+  std::span<const Table* const> tables() const { return tables_; }
+
+  /// Calls f(id) for each node below `id` and itself, parents first, children in order.
+  template <class F>
+  void walk(NodeId id, F&& f) const {
+    f(id);
+    for (const NodeId child : nodes_[id.slot].children) walk(child, f);
+  }
+
+ private:
+  struct Node {
+    const Table* table = nullptr;
+    std::string name;
+    void* thing = nullptr;
+    NodeId parent;
+    std::vector<NodeId> children;
+    std::uint64_t marks = 0;
+  };
+  struct ChildKey {
+    std::uint32_t parent;
+    std::string name;
+    bool operator==(const ChildKey&) const = default;
+  };
+  struct ChildKeyView {
+    std::uint32_t parent;
+    std::string_view name;
+  };
+  struct ChildHash {
+    using is_transparent = void;
+    std::size_t operator()(const ChildKey& k) const { return hash(k.parent, k.name); }
+    std::size_t operator()(const ChildKeyView& k) const { return hash(k.parent, k.name); }
+    static std::size_t hash(std::uint32_t parent, std::string_view name) {
+      return std::hash<std::string_view>{}(name) ^ (parent * 0x9e3779b97f4a7c15u);
+    }
+  };
+  struct ChildEqual {
+    using is_transparent = void;
+    template <class A, class B>
+    bool operator()(const A& a, const B& b) const {
+      return a.parent == b.parent && std::string_view(a.name) == std::string_view(b.name);
+    }
+  };
+
+  double* slot_values(NodeId id, const Row& row) {
+    NodeSlot& slot = slots_[id.slot];
+    return row.live ? live_.data() + slot.live + row.offset : kept_.data() + slot.kept + row.offset;
+  }
+  std::uint32_t take_block(std::vector<double>& block, std::vector<std::vector<std::uint32_t>>& spare,
+                           std::uint32_t width);
+  void release(NodeId id);
+  void refresh_view();
+
+  std::vector<NodeSlot> slots_;
+  std::vector<Node> nodes_;
+  std::vector<std::uint32_t> free_slots_;
+  std::vector<double> kept_;
+  std::vector<double> live_;
+  std::vector<std::vector<std::uint32_t>> spare_kept_;  // by width
+  std::vector<std::vector<std::uint32_t>> spare_live_;
+  std::unordered_map<ChildKey, NodeId, ChildHash, ChildEqual> child_of_;
+  std::vector<const Table*> tables_;
+  std::vector<NodeId> marked_;
+  std::vector<NodeId> applying_;
+  NodeId root_;
+  std::uint64_t kept_version_ = 0;
+  std::uint64_t structure_version_ = 0;
+  StoreView view_;
+};
+
+}  // namespace limber

@@ -1,0 +1,41 @@
+// The table of units.
+#include "params/units.h"
+
+#include <algorithm>
+#include <array>
+
+namespace limber {
+
+namespace {
+constexpr std::array kUnits = {
+    Unit{"m", "metre"},
+    Unit{"kg", "kilogram"},
+    Unit{"s", "second"},
+    Unit{"ms", "millisecond of simulated time"},
+    Unit{"rad", "radian"},
+    Unit{"deg", "degree"},
+    Unit{"Hz", "per second"},
+    Unit{"m/s", "metre per second"},
+    Unit{"m/s²", "metre per second squared"},
+    Unit{"rad/s", "radian per second"},
+    Unit{"m/s | rad/s", "metre per second along, radian per second about the axis"},
+    Unit{"m | rad", "metre along, radian about the axis"},
+    Unit{"N", "newton"},
+    Unit{"N·m", "newton metre"},
+    Unit{"N·s", "newton second"},
+    Unit{"N/m", "newton per metre"},
+    Unit{"N·s/m", "newton second per metre"},
+    Unit{"N·m/rad", "newton metre per radian"},
+    Unit{"N·m·s/rad", "newton metre second per radian"},
+    Unit{"1/s", "fraction lost per second"},
+    Unit{"× real time", "simulated seconds per real second"},
+};
+}  // namespace
+
+std::span<const Unit> units() { return kUnits; }
+
+bool known_unit(std::string_view symbol) {
+  return symbol.empty() || std::any_of(kUnits.begin(), kUnits.end(), [&](const Unit& u) { return u.symbol == symbol; });
+}
+
+}  // namespace limber
