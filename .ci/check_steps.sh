@@ -1,0 +1,196 @@
+# shellcheck shell=bash disable=SC2046,SC2086,SC2013,SC2154
+# The steps of ./check. Each one adds to passed and failed; summary() tells them in the closing line.
+
+passed=0
+failed=0
+# what runs under which sanitizer: the address sanitizer takes all but tests that only read files;
+# the thread sanitizer takes the rooms where threads meet
+asan_leaves_out="architecture first_minutes long"
+tsan_takes="base engine osc"
+
+pass() { passed=$((passed + ${1:-1})); }
+# fail TEXT LOG: one failed check, with the end of its log
+fail() {
+  failed=$((failed + 1))
+  say "FAILED: $1"
+  [ -z "${2-}" ] || tail -n 40 "$2" | sed 's/^/    /'
+}
+
+summary() {
+  printf '%d passed, %d failed\n' "$passed" "$failed"
+  [ "$failed" = 0 ]
+  exit
+}
+
+# a sanitizer's shadow memory wants addresses that strong address randomisation may take
+fixed_addresses() { if setarch -R true 2>/dev/null; then setarch -R "$@"; else "$@"; fi; }
+
+# build FOLDER TARGET...: quiet unless it fails
+build() {
+  local folder=$1 log begin=$SECONDS
+  shift
+  log=build/check/build_${folder//\//_}.log
+  if cmake --build "$folder" -j "$(jobs)" ${1:+--target "$@"} -- -k 0 >"$log" 2>&1; then
+    pass
+    say "$folder built in $((SECONDS - begin)) s"
+  else
+    grep -E 'error|FAILED' "$log" | head -20 >&2
+    fail "building $folder (whole output: $log)"
+    return 1
+  fi
+}
+
+# run_tests FOLDER ROOM...: runs test_ROOM of that build and counts its tests; a skipped one counts as failed
+run_tests() {
+  local folder=$1 room log ok bad rc begin
+  shift
+  for room in "$@"; do
+    [ -x "$folder/test_$room" ] || { fail "$folder/test_$room was not built"; continue; }
+    log=build/check/${folder//\//_}_test_$room.log
+    begin=$SECONDS
+    fixed_addresses timeout -k 10 "${test_seconds:-900}" "$folder/test_$room" --gtest_color=no >"$log" 2>&1
+    rc=$?
+    ok=$(grep -c '\[       OK \]' "$log")
+    bad=$(grep -cE '\[  (FAILED  |SKIPPED )\] .* \([0-9]+ ms\)$' "$log")
+    pass "$ok"
+    failed=$((failed + bad))
+    if [ "$bad" != 0 ]; then
+      grep -E '\[  (FAILED  |SKIPPED )\] .* \([0-9]+ ms\)$' "$log" | sed 's/^/    /'
+      grep -B1 -A8 ': Failure$' "$log" | head -60 | sed 's/^/    /'
+    elif [ $rc != 0 ]; then
+      # it crashed, hung, or a sanitizer spoke after the last test
+      fail "$folder/test_$room ended with code $rc (124 and 137: too slow)" "$log"
+    elif [ "$ok" = 0 ]; then
+      fail "$folder/test_$room holds no test"
+    fi
+    say "$folder/test_$room: $ok passed, $((bad > 0 ? bad : rc != 0)) failed, $((SECONDS - begin)) s"
+  done
+}
+
+# the folders of tests/ that make a test program, without those named in the arguments
+test_rooms() {
+  local folder room
+  for folder in tests/*/; do
+    room=$(basename "$folder")
+    case " bench fuzz faults $* " in *" $room "*) continue ;; esac
+    [ -z "$(find "$folder" -name '*_test.cpp' -print -quit)" ] || printf '%s ' "$room"
+  done
+}
+
+step_release() {
+  configure release build -DLIMBER_TESTS=ON -DLIMBER_BENCHMARKS=ON
+  build build && run_tests build $(test_rooms long)
+}
+
+sanitizer_options() {
+  export ASAN_OPTIONS=strict_string_checks=1:detect_stack_use_after_return=0:allocator_may_return_null=1
+  export UBSAN_OPTIONS=print_stacktrace=1
+  export TSAN_OPTIONS=halt_on_error=1:second_deadlock_stack=1
+  export ASAN_SYMBOLIZER_PATH=/usr/bin/llvm-symbolizer-14
+}
+
+step_asan() {
+  sanitizer_options
+  configure asan build/asan
+  build build/asan && run_tests build/asan $(test_rooms $asan_leaves_out)
+}
+
+step_tsan() {
+  sanitizer_options
+  configure tsan build/tsan
+  local rooms=() room
+  for room in $tsan_takes; do
+    case " $(test_rooms)" in *" $room "*) rooms+=("$room") ;; esac
+  done
+  build build/tsan "${rooms[@]/#/test_}" && run_tests build/tsan "${rooms[@]}"
+}
+
+# fuzz_target NAME ARGUMENTS...: replays the corpus, then looks for more; what it finds stays in build/check/fuzz
+fuzz_target() {
+  local name=$1 short=${1%_fuzz} log=build/check/$1.log found=build/check/fuzz/$1 seeds dictionary=
+  shift
+  mkdir -p "$found"
+  seeds=tests/fuzz/corpus/$short
+  [ -d "$seeds" ] || seeds=
+  [ ! -e "tests/fuzz/$short.dict" ] || dictionary=-dict=tests/fuzz/$short.dict
+  if fixed_addresses "build/asan/$name" -seed=1 -timeout=20 -rss_limit_mb=4096 -artifact_prefix="$found/bad-" \
+    -print_final_stats=1 $dictionary "$@" "$found" $seeds >"$log" 2>&1; then
+    pass
+    say "$name: $(sed -n 's/^stat::number_of_executed_units: *//p' "$log") inputs without a fault"
+  else
+    fail "$name (the input is in $found)" "$log"
+  fi
+}
+
+fuzz_names() { (cd tests/fuzz 2>/dev/null && ls ./*_fuzz.cpp 2>/dev/null) | sed 's|^\./||; s|\.cpp$||'; }
+
+step_fuzz() {
+  local names name
+  sanitizer_options
+  names=$(fuzz_names)
+  [ -n "$names" ] || { say "no fuzz targets"; return; }
+  [ -e build/asan/build.ninja ] || configure asan build/asan
+  build build/asan $names || return
+  # a minute for all of them together
+  for name in $names; do
+    fuzz_target "$name" -max_total_time=$((60 / $(wc -w <<<"$names") + 1))
+  done
+}
+
+# full fuzzing, and the floods and soaks of tests/long
+step_long() {
+  local name minutes=${LIMBER_LONG_MINUTES:-30}
+  say "--long: figures go to docs/evidence.md, with this commit: $(git rev-parse --short=10 HEAD)"
+  for name in $(fuzz_names); do
+    case $name in
+      osc*) fuzz_target "$name" -runs=10000000 ;;
+      *) fuzz_target "$name" -max_total_time=$((minutes * 60)) ;;
+    esac
+  done
+  case " $(test_rooms)" in *" long "*) test_seconds=14400 run_tests build long ;; esac
+}
+
+# each script names what it needs in a line "# needs: PROGRAM..."
+clients() {
+  local script program left_out=()
+  for script in tests/clients/*.sh; do
+    [ -e "$script" ] || break
+    for program in $(sed -n 's/^# needs: //p' "$script"); do
+      command -v "$program" >/dev/null || { left_out+=("$(basename "$script") (needs $program)"); continue 2; }
+    done
+    if bash "$script" >"build/check/$(basename "$script").log" 2>&1; then pass; else
+      fail "$script" "build/check/$(basename "$script").log"; fi
+  done
+  [ -e "$script" ] || left_out+=("everything: there is no test yet for npm clients, browsers or SuperCollider")
+  say "left out: ${left_out[*]:-nothing}"
+}
+
+# our C++ files, in the index or new
+cpp_files() { git ls-files -co --exclude-standard -- 'src/*.cpp' 'src/*.h' 'tests/*.cpp' 'tests/*.h'; }
+
+# what differs from the main branch, or, on the main branch, from the commit before
+changed_files() {
+  local base
+  base=$(git merge-base HEAD origin/main 2>/dev/null)
+  if [ -z "$base" ] || [ "$base" = "$(git rev-parse HEAD)" ]; then base=$(git rev-parse -q --verify HEAD~1 || git rev-parse HEAD); fi
+  { git diff --name-only --diff-filter=d "$base"; git ls-files -o --exclude-standard; } | grep -E '^(src|tests)/.*\.cpp$' | sort -u
+}
+
+step_style() {
+  local log=build/check/format.log files
+  git rev-parse --git-dir >/dev/null 2>&1 || { say "no git checkout: format and lint left out"; return; }
+  if cpp_files | xargs -r clang-format-14 --dry-run -Werror >"$log" 2>&1; then pass; else
+    fail "format; cure: clang-format-14 -i on $(sed -n 's/^\([^:]*\):.*error:.*/\1/p' "$log" | sort -u | tr '\n' ' ')"
+  fi
+  case ${LIMBER_TIDY:-changed} in all) files=$(cpp_files | grep '\.cpp$') ;; off) files= ;; *) files=$(changed_files) ;; esac
+  [ -n "$files" ] || return
+  log=build/check/tidy.log
+  # our own flags, so that no build has to come first
+  if xargs -P "$(jobs)" -n 1 .ci/tidy >"$log" 2>&1 <<<"$files"; then
+    pass
+    say "clang-tidy: $(wc -l <<<"$files") files clean"
+  else
+    grep -E 'warning:|error:' "$log" | sort -u | head -40 | sed 's/^/    /'
+    fail "clang-tidy (whole output: $log)"
+  fi
+}
