@@ -1,0 +1,29 @@
+// ScriptHost: what a scene may ask of the outside. The engine implements it; scripts never see a socket. [sim]
+#pragma once
+
+#include <string_view>
+
+#include "base/message.h"
+#include "base/osc_plan.h"
+
+namespace limber {
+
+class ScriptHost {
+ public:
+  virtual ~ScriptHost() = default;
+
+  /// osc:send — to every target.
+  virtual void send(Message message) = 0;
+  /// osc:reply — to the sender of the message that is being handled.
+  virtual void reply(const Origin& to, Message message) = 0;
+  /// osc:to("host:port"):send.
+  virtual void send_direct(const Origin& to, Message message) = 0;
+  /// What the scene's run said by osc:listen and osc:stream_to; called once, after a good run.
+  virtual void plan_osc(const OscPlan& plan) = 0;
+  /// sim:reset() from a callback: done between two ticks.
+  virtual void ask_reset() = 0;
+  /// A script's fault, with file and line: log, panel, /script/error. Empty text: the file is mended.
+  virtual void script_error(std::string_view file, int line, std::string_view text) = 0;
+};
+
+}  // namespace limber

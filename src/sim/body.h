@@ -1,0 +1,108 @@
+// Body: a named tree of parts, joints and motors; made by hand, from a model, or as a copy. [sim]
+#pragma once
+
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "model/body_model.h"
+#include "params/store.h"
+#include "sim/joint.h"
+#include "sim/motor.h"
+#include "sim/part.h"
+#include "sim/shape.h"
+
+namespace limber {
+
+class World;
+
+/// How a body is made from a model.
+struct BuildOptions {
+  bool servo_motors = true;      ///< false: motors are made off.
+  std::optional<Vec3> position;  ///< Of the root's link frame; left out: as the model places it.
+  std::optional<Quat> rotation;
+};
+
+class Body {
+ public:
+  static const Table& table();
+
+  Body(World& world, NodeId group, std::string name);
+  ~Body();
+  Body(const Body&) = delete;
+  Body& operator=(const Body&) = delete;
+
+  NodeId id() const { return id_; }
+  const std::string& name() const;
+  World& world() const { return world_; }
+  Store& store() const;
+  std::span<const std::unique_ptr<Part>> parts() const { return parts_; }
+  std::span<const std::unique_ptr<Joint>> joints() const { return joints_; }
+  std::span<const std::unique_ptr<Motor>> motors() const { return motors_; }
+  Part* root() const { return parts_.empty() ? nullptr : parts_.front().get(); }
+  Part* find_part(std::string_view name) const;
+  Joint* find_joint(std::string_view name) const;
+  Motor* find_motor(std::string_view name) const;
+  /// The model it was imported from, or null; carries the merged links' frames.
+  const std::shared_ptr<const BodyModel>& model() const { return model_; }
+  /// World pose of a link by name, merged ones included.
+  Result<Pose> link_pose(std::string_view name) const;
+
+  /// Adds a part of a shape; `mass` 0: static. Errors: a taken or unprintable name, a plane with mass.
+  Result<Part*> add_part(std::string name, Shape& shape, double mass, const Pose& pose);
+  /// Adds a joint in the pose that the parts have now, which becomes its zero. `position` and `axis` are world.
+  Result<Joint*> add_joint(std::string name, Part& parent, Part& child, JointType type, const Vec3& position,
+                           const Vec3& axis);
+  /// One motor a joint; a fixed joint takes none.
+  Result<Motor*> add_motor(Joint& joint);
+
+  /// The root's link frame. Setting moves the whole body rigidly; velocities stay.
+  Pose pose() const;
+  void set_pose(const Pose& pose);
+  bool enabled() const { return enabled_; }
+  /// Takes the body out of the world, or back in: what health does, and `reset` undoes.
+  void set_enabled(bool on);
+  /// Back to the start pose, at rest, enabled; values stay.
+  void reset();
+  /// The present pose becomes the start pose.
+  void take_start_pose();
+
+  void push_forces();
+  void tell(double tick_seconds);
+  std::uint64_t state_hash(std::uint64_t start) const;
+
+ private:
+  friend class World;
+  void build(const std::shared_ptr<const BodyModel>& model, const BuildOptions& options);
+  void build_copy(const Body& source);
+  void follow_motors();
+  void effect_enabled();
+  void read_position(double* out) const;
+  void write_position(const double* in);
+  void read_rotation(double* out) const;
+  void write_rotation(const double* in);
+  void read_linear_velocity(double* out) const;
+  void write_linear_velocity(const double* in);
+  void read_angular_velocity(double* out) const;
+  void write_angular_velocity(const double* in);
+  Result<void> act_reset(std::span<const double> args);
+  Result<void> act_remove(std::span<const double> args);
+
+  World& world_;
+  NodeId id_;
+  NodeId part_group_, joint_group_, motor_group_;
+  std::shared_ptr<const BodyModel> model_;
+  std::vector<std::unique_ptr<Part>> parts_;
+  std::vector<std::unique_ptr<Joint>> joints_;
+  std::vector<std::unique_ptr<Motor>> motors_;
+  std::vector<Motor*> followers_;
+  bool enabled_ = true;
+  bool in_world_ = true;
+
+  // health: the pose after the last good tick, and whether it was needed already
+  std::vector<Pose> last_good_;
+  bool restored_once_ = false;
+};
+
+}  // namespace limber

@@ -1,0 +1,53 @@
+// Contacts: which reporting parts began to touch, gathered over a tick's internal steps. [sim]
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "base/vec.h"
+#include "sim/bullet.h"
+
+namespace limber {
+
+class Part;
+
+/// Two parts began to touch; `part` asked for reports.
+struct ContactEvent {
+  Part* part = nullptr;
+  Part* other = nullptr;
+  double impulse = 0;  ///< Sum over the tick, N·s.
+  Vec3 position{0};    ///< World, of the deepest point.
+};
+
+class Contacts {
+ public:
+  void part_reports(bool on) { reporting_ += on ? 1 : -1; }
+  /// A part is about to go: forget its pairs.
+  void forget(const Part& part);
+  /// Before the tick's first internal step.
+  void begin_tick();
+  /// After each internal step: costs nothing while no part reports.
+  void gather(btDispatcher& dispatcher);
+  /// After the last: what began to touch.
+  void end_tick();
+  std::span<const ContactEvent> begun() const { return begun_; }
+
+ private:
+  struct Pair {
+    Part* a;
+    Part* b;
+    double impulse;
+    double depth;
+    Vec3 position;
+    bool before;
+    bool now;
+  };
+  Pair& pair_of(Part* a, Part* b);
+
+  int reporting_ = 0;
+  std::vector<Pair> pairs_;  // in the order in which they first touched
+  std::vector<ContactEvent> begun_;
+};
+
+}  // namespace limber

@@ -1,0 +1,83 @@
+// Joint: how a child part hangs on its parent. Limits here, drives in its motor. Everything right-handed, child
+// relative to parent. [sim]
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "params/store.h"
+#include "sim/joint_constraint.h"
+#include "sim/part.h"
+
+namespace limber {
+
+class Motor;
+
+/// Drives a follower's servo: its target is multiplier · (leader's value) + offset.
+struct Mimic {
+  std::string leader;
+  double multiplier = 1;
+  double offset = 0;
+};
+
+/// What a joint is made of.
+struct JointSpec {
+  JointType type = JointType::revolute;
+  Pose frame_in_parent;  ///< In the parent's link frame; z = the own axis.
+  Pose frame_in_child;
+  bool limited = false;  ///< Limits of the own axis; else it is free.
+  double lower = 0;
+  double upper = 0;
+  double friction = 0;  ///< Coulomb limit of the own axis, N·m or N (URDF <dynamics friction>).
+  std::optional<Mimic> mimic;
+};
+
+class Joint {
+ public:
+  static const Table& table();
+
+  Joint(Body& body, NodeId group, std::string name, Part& parent, Part& child, const JointSpec& spec);
+  ~Joint();
+  Joint(const Joint&) = delete;
+  Joint& operator=(const Joint&) = delete;
+
+  NodeId id() const { return id_; }
+  const std::string& name() const;
+  JointType type() const { return spec_.type; }
+  const JointSpec& spec() const { return spec_; }
+  Body& body() const { return body_; }
+  Part& parent() const { return parent_; }
+  Part& child() const { return child_; }
+  Motor* motor() const { return motor_; }
+  void set_motor(Motor* motor) { motor_ = motor; }
+  JointConstraint& constraint() { return *constraint_; }
+  const JointConstraint& constraint() const { return *constraint_; }
+
+  /// 0..2 linear x y z, 3..5 angular x y z; -1: a fixed joint has none.
+  int own_axis() const;
+  /// Own axis: rad or m.
+  double value() const;
+
+  /// After Bullet stepped, or poses were set: readouts into the live block.
+  void tell();
+  /// Multi-turn angles forget their turns: after poses were set.
+  void forget_turns();
+
+ private:
+  void effect_limits();
+
+  Body& body_;
+  NodeId id_;
+  Part& parent_;
+  Part& child_;
+  JointSpec spec_;
+  std::unique_ptr<JointConstraint> constraint_;
+  Motor* motor_ = nullptr;
+};
+
+/// "revolute", "prismatic" … and back (by the one naming rule).
+std::string_view joint_type_name(JointType type);
+std::optional<JointType> joint_type_named(std::string_view name);
+
+}  // namespace limber

@@ -1,0 +1,57 @@
+// Motor: what drives a joint, axis by axis: off, spin, servo or spring. It carries the joint's name. [sim]
+#pragma once
+
+#include <string>
+
+#include "params/store.h"
+#include "sim/joint.h"
+
+namespace limber {
+
+enum class MotorMode : std::uint8_t { off, spin, servo, spring };
+
+class Motor {
+ public:
+  static const Table& table();
+
+  /// Made as a servo of the own axis that holds where the joint is.
+  Motor(Joint& joint, NodeId group);
+  ~Motor();
+  Motor(const Motor&) = delete;
+  Motor& operator=(const Motor&) = delete;
+
+  NodeId id() const { return id_; }
+  const std::string& name() const { return joint_.name(); }
+  Joint& joint() const { return joint_; }
+  /// What is in force on an axis, from the three flags.
+  MotorMode mode(int axis) const;
+  /// Sets the flags of the own axis to a mode, through the door.
+  void set_mode(MotorMode mode);
+  /// Servo position and spring rest of the own axis, through the door.
+  void set_target(double target);
+
+  /// Before Bullet steps: a follower's target from its leader.
+  void follow();
+  /// After Bullet stepped: forces into the live block.
+  void tell(double tick_seconds);
+
+ private:
+  void effect_axes();
+  void read_mode(double* out) const;
+  void write_mode(const double* in);
+  void read_target(double* out) const;
+  void write_target(const double* in);
+  void read_speed(double* out) const;
+  void write_speed(const double* in);
+  Result<void> refuse_own_axis(const double* in) const;
+  void set_own(std::string_view linear_row, std::string_view angular_row, double value);
+
+  Joint& joint_;
+  NodeId id_;
+  Joint* leader_ = nullptr;
+  bool leader_sought_ = false;
+  bool said_contradiction_ = false;
+  bool said_cap_ = false;
+};
+
+}  // namespace limber

@@ -1,0 +1,87 @@
+// Part: one rigid piece of a body. Users see its link frame; Bullet moves its centre-of-mass frame. [sim]
+#pragma once
+
+#include <memory>
+#include <string>
+
+#include "params/store.h"
+#include "sim/geometry.h"
+
+namespace limber {
+
+class Body;
+class Shape;
+class World;
+
+class Part {
+ public:
+  static const Table& table();
+
+  /// `mass` 0: static, now and for ever. `pose`: the link frame, world.
+  Part(Body& body, NodeId group, std::string name, std::shared_ptr<const Geometry> geometry, double mass,
+       const Pose& pose);
+  ~Part();
+  Part(const Part&) = delete;
+  Part& operator=(const Part&) = delete;
+
+  NodeId id() const { return id_; }
+  const std::string& name() const;
+  Body& body() const { return body_; }
+  bool is_static() const { return is_static_; }
+  const std::shared_ptr<const Geometry>& geometry() const { return geometry_; }
+  /// The scene's shape that it was made of, or a null id (URDF).
+  NodeId shape() const { return shape_; }
+  void set_shape(NodeId shape) { shape_ = shape; }
+  btRigidBody& rigid() { return *rigid_; }
+  const btRigidBody& rigid() const { return *rigid_; }
+
+  /// Link frame as the store has it: as told after the last tick, or as set since.
+  Pose pose() const;
+  Vec3 center() const;
+  Vec3 linear_velocity() const;
+  Vec3 angular_velocity() const;
+  void set_pose(const Pose& pose);
+  void set_velocity(const Vec3& linear, const Vec3& angular);
+  /// Where it was made: reset's goal.
+  const Pose& start_pose() const { return start_; }
+  void set_start_pose(const Pose& pose) { start_ = pose; }
+
+  /// Forces act for the whole coming tick on each internal step, then end. `at`: a world point.
+  void apply_force(const Vec3& force) { force_ += force; }
+  void apply_force_at(const Vec3& force, const Vec3& at);
+  void apply_torque(const Vec3& torque) { torque_ += torque; }
+  void apply_impulse(const Vec3& impulse) { impulse_ += impulse; }
+  void apply_impulse_at(const Vec3& impulse, const Vec3& at);
+  void clear_forces();
+
+  /// Before Bullet steps: hands the collected forces and impulses over.
+  void push_forces();
+  /// After Bullet stepped: poses and velocities into the live block.
+  void tell();
+  bool reports_contacts() const;
+
+ private:
+  void effect_mass();
+  void effect_damping();
+  void effect_surface();
+  void effect_pose();
+  void effect_velocity();
+  void effect_reports();
+  void read_center(double* out) const;
+  Result<void> refuse_mass(const double* in) const;
+  Result<void> act_force(std::span<const double> args);
+  Result<void> act_impulse(std::span<const double> args);
+  Result<void> act_torque(std::span<const double> args);
+
+  Body& body_;
+  NodeId id_;
+  NodeId shape_;
+  std::shared_ptr<const Geometry> geometry_;
+  std::unique_ptr<btRigidBody> rigid_;
+  Pose start_;
+  Vec3 force_{0}, torque_{0}, impulse_{0}, angular_impulse_{0};
+  bool is_static_ = false;
+  bool pushed_ = false;
+};
+
+}  // namespace limber

@@ -1,0 +1,99 @@
+// World: the bodies, their shapes, and the tick's physical half: effects, Bullet, readouts, contacts, health. [sim]
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <string>
+#include <unordered_map>
+#include <vector>
+
+#include "params/store.h"
+#include "sim/body.h"
+#include "sim/contacts.h"
+#include "sim/island_world.h"
+#include "sim/shape.h"
+
+namespace limber {
+
+/// Where the tick's time went, seconds of the last tick.
+struct TickTimes {
+  double effects = 0;
+  double physics = 0;
+  double readouts = 0;
+};
+
+class World {
+ public:
+  static const Table& table();
+
+  explicit World(Store& store);
+  ~World();
+  World(const World&) = delete;
+  World& operator=(const World&) = delete;
+
+  Store& store() const { return store_; }
+  NodeId id() const { return id_; }
+
+  /// Errors: a taken name, a name that can't be printed.
+  Result<Body*> add_body(std::string name);
+  Result<Body*> add_body(const std::shared_ptr<const BodyModel>& model, std::string name, const BuildOptions& options);
+  /// At the same place, with all values. Placed (set_pose) before the next step, it never collides with its original.
+  Result<Body*> copy_body(const Body& source, std::string name);
+  void remove_body(Body& body);
+  Body* find_body(std::string_view name) const;
+  std::span<const std::unique_ptr<Body>> bodies() const { return bodies_; }
+  std::vector<std::string_view> body_names() const;
+
+  Result<Shape*> add_shape(std::string name, ShapeModel model);
+  Shape* find_shape(std::string_view name) const;
+  std::span<const std::unique_ptr<Shape>> shapes() const { return shapes_; }
+
+  double time() const;
+  std::uint64_t tick() const { return tick_; }
+  double timestep() const;
+  std::uint64_t seed() const;
+
+  /// One tick: effects of what was set, `substeps` internal steps, readouts, contacts, health.
+  void step();
+  /// Effects and readouts without time passing: while paused, and before the first tick.
+  void settle();
+  /// All bodies to their start poses, time 0.
+  void reset();
+  /// Removes every body and shape.
+  void clear();
+
+  /// Parts with `report_contacts` that began to touch in the last tick, in a fixed order.
+  std::span<const ContactEvent> contacts() const { return contacts_.begun(); }
+  /// Bodies that health restored or switched off since the start: `--strict` asks.
+  std::uint64_t health_events() const { return health_events_; }
+  /// Over the bits of all poses, velocities, kept rows; generators are added by their owners.
+  std::uint64_t state_hash() const;
+  const TickTimes& times() const { return times_; }
+
+  IslandWorld& bullet() { return *bullet_; }
+  Contacts& contact_log() { return contacts_; }
+
+ private:
+  friend class Body;
+  void effect_gravity();
+  void effect_solver();
+  void check_health();
+  void heal(Body& body, const char* what);
+  Result<void> name_is_free(NodeId group, std::string_view kind, std::string_view name) const;
+  Result<void> act_reset(std::span<const double> args);
+
+  Store& store_;
+  NodeId id_, body_group_, shape_group_;
+  std::unique_ptr<IslandWorld> bullet_;
+  std::vector<std::unique_ptr<Shape>> shapes_;
+  std::vector<std::unique_ptr<Body>> bodies_;
+  std::unordered_map<const BodyModel*, std::vector<std::shared_ptr<const Geometry>>> geometries_;
+  Contacts contacts_;
+  TickTimes times_;
+  std::uint64_t tick_ = 0;
+  std::uint64_t health_events_ = 0;
+  bool reset_asked_ = false;
+};
+
+}  // namespace limber
