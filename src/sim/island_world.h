@@ -1,0 +1,94 @@
+// IslandWorld: Bullet's dynamics world with islands dispatched in linear time and in a stable order, and IslandSolver,
+// which sets up the rows of our joints and hands back the impulses they applied.
+#pragma once
+
+#include <memory>
+
+#include "sim/bullet.h"
+#include "sim/joint_constraint.h"
+
+namespace limber {
+
+/// How a world is made; see performance notes of each for what it buys.
+struct WorldSetup {
+  int manifold_pool = 65536;        ///< Contact pairs that fit without heap allocation (about 1 kB each).
+  double broadphase_margin = 0.01;  ///< Metres that bounding boxes are fattened by; shared by all worlds.
+  int solver_iterations = 50;
+};
+
+/// Sequential impulses with joint rows of our own making: softness in physical units (a row is
+/// rate + softness·impulse = velocity), stable for any softness. [sim]
+class IslandSolver : public btSequentialImpulseConstraintSolver {
+ public:
+  BT_DECLARE_ALIGNED_ALLOCATOR();
+
+ protected:
+  void convertJoints(btTypedConstraint** constraints, int count, const btContactSolverInfo& info) override;
+  btScalar solveGroupCacheFriendlyFinish(btCollisionObject** bodies, int body_count,
+                                         const btContactSolverInfo& info) override;
+
+ private:
+  void convert_rows(JointConstraint& joint, btSolverConstraint* rows, int count, const btContactSolverInfo& info);
+};
+
+/// What a world is made of; a base of IslandWorld so that it outlives Bullet's part.
+struct WorldParts {
+  explicit WorldParts(const WorldSetup& setup);
+  std::unique_ptr<btDefaultCollisionConfiguration> configuration;
+  std::unique_ptr<btCollisionDispatcher> dispatcher;
+  std::unique_ptr<btDbvtBroadphase> broadphase;
+  std::unique_ptr<IslandSolver> solver;
+};
+
+/// Joints and contacts of an island are solved in an order that depends on that island alone (joints as added,
+/// contacts by the parts' age), so an island moves the same, bit for bit, alone or among others. Bodies are the
+/// caller's, without motion states, and never sleep. [sim]
+class IslandWorld : private WorldParts, public btDiscreteDynamicsWorld {
+ public:
+  BT_DECLARE_ALIGNED_ALLOCATOR();
+
+  explicit IslandWorld(const WorldSetup& setup = {});
+  ~IslandWorld() override;
+
+  /// One tick: `substeps` equal internal steps of `h` seconds each. Forces applied before act on all of them and are
+  /// cleared at the end, as are the joints' averages. Does nothing unless h > 0 and substeps > 0.
+  void step(double h, int substeps);
+
+  /// Joints keep the order in which they were added, whatever is removed between. By default the joined parts stop
+  /// colliding with each other, at once, and collide again when their last such joint is removed.
+  void addConstraint(btTypedConstraint* constraint, bool disable_collisions = true) override;
+  void removeConstraint(btTypedConstraint* constraint) override;
+
+  IslandSolver& island_solver() { return *solver; }
+
+ protected:
+  void solveConstraints(btContactSolverInfo& info) override;
+
+ private:
+  struct Touch {  // a contact manifold and its place in the order
+    int island;
+    int first;
+    int second;
+    btPersistentManifold* manifold;
+  };
+
+  void sort_bodies();
+  void sort_joints();
+  void sort_contacts();
+  void solve_islands(const btContactSolverInfo& info);
+
+  // Scratch of one internal step, kept so that nothing is allocated once the scene stands. Items of island i are
+  // bodies_[body_start_[i]] up to bodies_[body_start_[i + 1]], and so on.
+  int island_count_ = 0;
+  btAlignedObjectArray<int> island_of_tag_;
+  btAlignedObjectArray<int> body_start_;
+  btAlignedObjectArray<int> joint_start_;
+  btAlignedObjectArray<int> contact_start_;
+  btAlignedObjectArray<int> cursor_;
+  btAlignedObjectArray<btCollisionObject*> bodies_;
+  btAlignedObjectArray<btTypedConstraint*> joints_;
+  btAlignedObjectArray<Touch> touches_;
+  btAlignedObjectArray<btPersistentManifold*> contacts_;
+};
+
+}  // namespace limber

@@ -1,0 +1,182 @@
+// JointConstraint: the six-axis joint between two parts, with limits, motors, springs, damping and friction. It
+// writes its own solver rows, so that all a user sees is right-handed, child relative to parent, mirrored nowhere.
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+#include "base/vec.h"
+#include "sim/bullet.h"
+
+namespace limber {
+
+/// What an axis's motor does. A motor on a locked axis does nothing.
+enum class AxisDrive : std::uint8_t { off, spin, servo, spring };
+
+/// Everything that may be set on one axis. Linear axes: m, N, m/s; angular axes: rad, N·m, rad/s.
+struct AxisSettings {
+  float lower = 0;        ///< lower == upper: locked there; lower > upper: free; else limited.
+  float upper = 0;        ///< Angular limits may lie anywhere, also beyond ±pi, and may be wider than 2 pi.
+  float stop_erp = 0.2f;  ///< 0 .. 1: part of a lock's or limit's error that one internal step repairs.
+  /// Yield of a lock or limit per load, m/N or rad/(N·m), at rest, whatever the step; any value from 0 up is stable.
+  /// Together with stop_erp it is a spring 1/stop_cfm with damping h·(1 - stop_erp)/(stop_erp·stop_cfm).
+  float stop_cfm = 0;
+  AxisDrive drive = AxisDrive::off;
+  float velocity = 0;        ///< Spin: the speed to hold (0 brakes). Servo: its speed limit, sign ignored, 0: no limit.
+  float max_force = 0;       ///< Of spin and servo, >= 0.
+  float target = 0;          ///< Of the servo; clamped to the limits.
+  float rest = 0;            ///< Where the spring pulls to, counted in full turns: it is never wrapped.
+  float stiffness = 0;       ///< Of the spring, N/m or N·m/rad, capped for stability (see stiffness_applied).
+  float spring_damping = 0;  ///< Of the spring, N·s/m or N·m·s/rad; implicit, so never capped.
+  float friction = 0;        ///< Coulomb friction, N or N·m, in every mode.
+
+  bool locked() const { return lower == upper; }
+  bool free() const { return lower > upper; }
+  bool limited() const { return lower < upper; }
+};
+
+/// Axes 0..2 are linear along the parent-side frame's axes, 3..5 turn about x, y, z. The own axis is z (2 and 5).
+/// Positive: child moves or turns relative to the parent along or about +axis. Needs IslandSolver. [sim]
+///
+/// Order of angles: R(child in parent) = R_outer·R_middle·R_inner. The middle axis, which alone cannot turn beyond
+/// ±pi/2 without a singular pose, is the one with the least reach (a locked one when there is one); outer is z, or y
+/// when z is the middle. Free x, y, z, or only z or x free: Rz·Ry·Rx. Only y, or y and z free: Rz·Rx·Ry. x and y:
+/// Ry·Rz·Rx.
+class JointConstraint : public btTypedConstraint {
+ public:
+  BT_DECLARE_ALIGNED_ALLOCATOR();
+
+  /// Frames are given in each part's centre-of-mass frame; z is the own axis. All axes start locked at 0.
+  JointConstraint(btRigidBody& parent, btRigidBody& child, const btTransform& frame_in_parent,
+                  const btTransform& frame_in_child);
+
+  /// Takes effect at the next internal step. A free axis that becomes limited takes the turn nearest to its range.
+  void set_axis(int axis, const AxisSettings& settings);
+  const AxisSettings& axis(int axis) const { return axes_[static_cast<std::size_t>(axis)]; }
+  /// Moves the frames (centre-of-mass frames), keeping turns where it can.
+  void set_frames(const btTransform& frame_in_parent, const btTransform& frame_in_child);
+  const btTransform& frame_in_parent() const { return frame_a_; }
+  const btTransform& frame_in_child() const { return frame_b_; }
+  /// 0 .. 1: a limit met at speed w is left at -bounce·w.
+  void set_bounce(double bounce) { bounce_ = to_scalar(bounce); }
+  /// Passive damping of every axis that is not locked, in any mode: N·s/m and N·m·s/rad, >= 0, any value is stable.
+  void set_damping(double damping) { damping_ = to_scalar(damping); }
+
+  /// Call after a part was moved by hand: reads the pose anew, chooses the turns nearest to `near` (rad, own order)
+  /// and forgets what servos learnt and motors applied.
+  void reset(const Vec3& near = Vec3(0));
+  /// Reads angles, offsets and rates from the parts' present poses; IslandWorld::step ends with this for every joint.
+  void refresh();
+
+  // Readouts, as of the last refresh. Angles are in the joint's own order and count full turns.
+  Vec3 angles() const { return {angle_[0], angle_[1], angle_[2]}; }
+  Vec3 offsets() const { return {offset_[0], offset_[1], offset_[2]}; }
+  Vec3 angle_rates() const { return {rate_[3], rate_[4], rate_[5]}; }
+  Vec3 offset_rates() const { return {rate_[0], rate_[1], rate_[2]}; }
+  /// Position of one axis, 0..5, m or rad; its rate, m/s or rad/s.
+  double value(int axis) const {
+    const auto i = static_cast<std::size_t>(axis);
+    return axis < 3 ? static_cast<double>(offset_[i]) : angle_[i - 3];
+  }
+  double rate(int axis) const { return static_cast<double>(rate_[static_cast<std::size_t>(axis)]); }
+  /// The same rotation as Rz(z)·Ry(y)·Rx(x), whatever the own order; z counts turns where axis 5 may pass ±pi.
+  Vec3 relrot() const;
+  /// Outer, middle, inner axis, each 0 (x) .. 2 (z).
+  std::array<int, 3> order() const { return {outer_, middle_, inner_}; }
+  /// World pose of the joint's frame on the parent, and on the child (its own motion included).
+  Pose parent_frame() const { return from_bt(m_rbA.getCenterOfMassTransform() * frame_a_); }
+  Pose child_frame() const { return from_bt(m_rbB.getCenterOfMassTransform() * frame_b_); }
+
+  /// What motors, servos and springs applied on the child, mean over the last tick, N and N·m per axis.
+  Vec3 applied_force() const { return {applied_[0], applied_[1], applied_[2]}; }
+  Vec3 applied_torque() const { return {applied_[3], applied_[4], applied_[5]}; }
+  /// The spring in force at the last internal step: stiffness is held below inertia/(16 h²), 0 where no spring acts.
+  double stiffness_applied(int axis) const;
+  double damping_applied(int axis) const;
+  /// Inertia that a spring on this axis works on, the locked axes held: kg or kg·m². It says how many substeps
+  /// would lift the cap: h <= sqrt(inertia/(16·stiffness)).
+  double effective_inertia(int axis) const;
+
+  // For IslandSolver and IslandWorld.
+  /// Length of the internal step that the next rows are for, s.
+  void set_step(btScalar h) { h_ = h; }
+  /// Impulses of the rows just solved, in the order in which getInfo2 wrote them.
+  void take_impulses(const btSolverConstraint* rows, int count);
+  /// Ends a tick: averages what was applied, refreshes the readouts.
+  void end_tick();
+
+  void getInfo1(btConstraintInfo1* info) override;
+  void getInfo2(btConstraintInfo2* info) override;
+  /// BT_CONSTRAINT_STOP_ERP and BT_CONSTRAINT_STOP_CFM of one axis.
+  void setParam(int parameter, btScalar value, int axis = -1) override;
+  btScalar getParam(int parameter, int axis = -1) const override;
+
+  /// Tells a JointConstraint from Bullet's own.
+  static constexpr btTypedConstraintType kType = MAX_CONSTRAINT_TYPE;
+
+ private:
+  // One row to come: rate + softness·impulse = velocity, impulse within [lower, upper].
+  struct Row {
+    btScalar velocity;
+    btScalar softness;
+    btScalar lower;
+    btScalar upper;
+    std::uint8_t axis;
+    bool motor;  // counts as applied force
+  };
+  static constexpr int kMaxRows = 30;  // per axis: motor, damping, friction, two limits
+
+  struct Jacobian {
+    btVector3 linear;  // on the child; the parent's is the negative
+    btVector3 angular_a;
+    btVector3 angular_b;
+  };
+
+  void choose_order();
+  void read_pose();
+  void read_angles(const btMatrix3x3& r, const btVector3* axes_b);
+  void read_rates();
+  double unwrapped(int axis, double raw) const;
+  Jacobian jacobian(int axis) const;
+  static btScalar mobility(const btRigidBody& a, const btRigidBody& b, const Jacobian& i, const Jacobian& j);
+
+  void plan_rows();
+  void plan_lock(int axis);
+  void plan_motion(int axis);
+  void plan_motor(int axis);
+  void plan_spring(int axis);
+  void plan_limit(int axis, bool upper);
+  btScalar servo_velocity(int axis);
+  void learn_inertia(int axis);
+  btScalar capped_stiffness(int axis) const;
+  void add_row(int axis, btScalar velocity, btScalar softness, btScalar lower, btScalar upper, bool motor = false);
+
+  btTransform frame_a_;
+  btTransform frame_b_;
+  std::array<btVector3, 3> axis_a_;  // the parent-side frame's axes, world
+  std::array<btVector3, 3> dual_;    // angular rate i = dual_[i] · (w_child - w_parent)
+  btVector3 arm_a_;                  // from each centre of mass to the child's pivot, world
+  btVector3 arm_b_;
+  std::array<AxisSettings, 6> axes_{};
+  std::array<double, 3> angle_{};
+  std::array<float, 3> offset_{};
+  std::array<float, 6> rate_{};
+  std::array<float, 6> previous_rate_{};
+  std::array<float, 6> motor_impulse_{};  // of the last internal step
+  std::array<float, 6> tick_impulse_{};   // of the tick so far
+  std::array<float, 6> applied_{};
+  std::array<float, 6> learnt_inertia_{};
+  std::array<float, 6> pair_inertia_{};
+  std::array<float, 6> stiffness_applied_{};
+  float tick_time_ = 0;
+  btScalar h_ = btScalar(1.0 / 240.0);
+  btScalar bounce_ = 0;
+  btScalar damping_ = 0;
+  int outer_ = 2;
+  int middle_ = 1;
+  int inner_ = 0;
+  int row_count_ = 0;
+  std::array<Row, kMaxRows> rows_;
+};
+
+}  // namespace limber
