@@ -1,0 +1,51 @@
+// Every file says what it is and stays short, and the map in src/README.md names every room.
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <string>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "architecture/source_rules.h"
+
+namespace limber::rules {
+namespace {
+
+TEST(Files, OpenWithACommentAndStayShort) {
+  std::size_t seen = 0;
+  for (const char* folder : {"src", "tests", "scripts", "behaviors_lua"}) {
+    for (const SourceFile& file : source_files(folder, {".h", ".hpp", ".cpp", ".inc", ".lua", ".cmake"})) {
+      for (const std::string& complaint : shape_complaints(file.path, file.text)) ADD_FAILURE() << complaint;
+      ++seen;
+    }
+  }
+  EXPECT_GT(seen, 10U) << "the tree was not found";
+}
+
+TEST(Files, PlantedFaultsAreFound) {
+  EXPECT_EQ(shape_complaints("src/sim/a.cpp", "#include <cmath>\n"),
+            std::vector<std::string>{"src/sim/a.cpp: does not open with a comment that says what it is"});
+  EXPECT_EQ(shape_complaints("scripts/a.lua", "// not Lua\n").size(), 1U);
+  EXPECT_TRUE(shape_complaints("scripts/a.lua", "-- What it is.\n").empty());
+
+  std::string text = "// What it is.\n";
+  for (int line = 1; line < 500; ++line) text += "int x;\n";
+  EXPECT_TRUE(shape_complaints("src/sim/a.cpp", text).empty());
+  EXPECT_EQ(shape_complaints("src/sim/a.cpp", text + "\n"),
+            std::vector<std::string>{"src/sim/a.cpp: has 501 lines, 500 are allowed"});
+}
+
+TEST(Files, TheMapNamesEveryRoom) {
+  std::ifstream in(LIMBER_SOURCE_DIR "/src/README.md");
+  const std::string map{std::istreambuf_iterator<char>(in), {}};
+  ASSERT_FALSE(map.empty()) << "src/README.md is missing";
+  for (const auto& entry : std::filesystem::directory_iterator(LIMBER_SOURCE_DIR "/src")) {
+    if (!entry.is_directory() || std::filesystem::is_empty(entry.path())) continue;
+    const std::string name = entry.path().filename().string();
+    EXPECT_NE(map.find("`" + name + "/`"), std::string::npos) << "src/README.md does not name `" << name << "/`";
+  }
+}
+
+}  // namespace
+}  // namespace limber::rules

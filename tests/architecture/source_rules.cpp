@@ -1,0 +1,194 @@
+// See source_rules.h. The tables at the top are the rules; what follows reads text.
+#include "architecture/source_rules.h"
+
+#include <algorithm>
+#include <array>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <sstream>
+
+namespace limber::rules {
+namespace {
+
+/// A room and the rooms it sees beside itself and base.
+struct Room {
+  std::string_view name;
+  std::string_view sees;
+};
+constexpr std::array kRooms{
+    Room{"base", ""},
+    Room{"params", ""},
+    Room{"model", ""},
+    Room{"sim", "params model"},
+    Room{"behaviors", "params model sim"},
+    Room{"script", "params model sim"},
+    Room{"engine", "params model sim behaviors script"},
+    // the outside sees commands, snapshots and the catalog, nothing live
+    Room{"osc", "params model engine"},
+    Room{"query", "params model engine"},
+    Room{"view", "params model engine"},
+    Room{"gui", "params model engine"},
+    Room{"app", "params model sim behaviors script engine osc query view gui"},
+};
+
+/// An outside library, by how its headers begin, and the room that may include it ("" : every room).
+struct Library {
+  std::string_view header;
+  std::string_view room;
+};
+constexpr std::array kLibraries{
+    Library{"bt", "sim"},
+    Library{"BulletCollision/", "sim"},
+    Library{"BulletDynamics/", "sim"},
+    Library{"BulletSoftBody/", "sim"},
+    Library{"LinearMath/", "sim"},
+    Library{"bullet/", "sim"},
+    Library{"urdf_", "model"},
+    Library{"tinyxml", "model"},
+    Library{"console_bridge/", "model"},
+    Library{"assimp/", "model"},
+    Library{"lua", "script"},
+    Library{"lauxlib.h", "script"},
+    Library{"luajit-2.1/", "script"},
+    Library{"oscpack/", "osc"},
+    Library{"boost/", "query"},
+    Library{"epoxy/", "view"},
+    Library{"GL/", "view"},
+    Library{"EGL/", "view"},
+    Library{"imgui", "gui"},
+    Library{"GLFW/", "app"},
+    Library{"CLI/", "app"},
+    Library{"spdlog/", "base"},
+    Library{"fmt/", ""},
+    Library{"glm/", ""},
+    Library{"nlohmann/", ""},
+};
+
+/// Headers of the C library and the kernel that have an ending or a folder; C++'s own have neither.
+constexpr std::array kSystem{"sys/",       "netinet/",    "arpa/",       "net/",        "linux/",   "unistd.h",
+                             "poll.h",     "fcntl.h",     "signal.h",    "pthread.h",   "sched.h",  "netdb.h",
+                             "ifaddrs.h",  "dirent.h",    "execinfo.h",  "dlfcn.h",     "glob.h",   "spawn.h",
+                             "termios.h",  "immintrin.h", "emmintrin.h", "xmmintrin.h", "malloc.h", "alloca.h",
+                             "ucontext.h", "cxxabi.h"};
+
+bool has_word(std::string_view words, std::string_view word) {
+  std::istringstream in{std::string(words)};
+  return std::find(std::istream_iterator<std::string>(in), {}, word) != std::istream_iterator<std::string>();
+}
+
+/// "src/sim/world.cpp" is of sim; what lies in src/ itself belongs to app.
+std::string room_of(std::string_view path) {
+  path.remove_prefix(std::string_view("src/").size());
+  const auto slash = path.find('/');
+  return slash == std::string_view::npos ? "app" : std::string(path.substr(0, slash));
+}
+
+const Room* find_room(std::string_view name) {
+  const auto* found = std::find_if(kRooms.begin(), kRooms.end(), [&](const Room& r) { return r.name == name; });
+  return found == kRooms.end() ? nullptr : found;
+}
+
+/// What one line includes: the delimiter '<' or '"' and the name; delimiter 0 when it includes nothing.
+struct Include {
+  char delimiter = 0;
+  std::string_view name;
+};
+Include include_of(std::string_view line) {
+  const auto skip = [&line] { line.remove_prefix(std::min(line.find_first_not_of(" \t"), line.size())); };
+  skip();
+  if (!line.starts_with('#')) return {};
+  line.remove_prefix(1);
+  skip();
+  if (!line.starts_with("include")) return {};
+  line.remove_prefix(std::string_view("include").size());
+  skip();
+  if (line.empty() || (line[0] != '<' && line[0] != '"')) return {};
+  const char delimiter = line[0];
+  line.remove_prefix(1);
+  return {delimiter, line.substr(0, line.find(delimiter == '<' ? '>' : '"'))};
+}
+
+/// Why `room` may not include our own file `name`; empty: it may.
+std::string own_complaint(const Room& room, std::string_view name) {
+  const auto slash = name.find('/');
+  if (slash == std::string_view::npos || name.starts_with('.')) return "is not written from src/, like \"base/vec.h\"";
+  const std::string_view target = name.substr(0, slash);
+  if (find_room(target) == nullptr) return "names no room of src/";
+  if (target == room.name || target == "base" || has_word(room.sees, target)) return {};
+  return "looks up or sideways: " + std::string(room.name) + " sees base " + std::string(room.sees);
+}
+
+/// The same for an outside header.
+std::string library_complaint(const Room& room, std::string_view name) {
+  for (const Library& library : kLibraries) {
+    if (!name.starts_with(library.header)) continue;
+    if (library.room.empty() || library.room == room.name) return {};
+    return "belongs to the room " + std::string(library.room) + " alone";
+  }
+  if (name.find_first_of("./") == std::string_view::npos) return {};
+  for (const char* system : kSystem) {
+    if (name.starts_with(system)) return {};
+  }
+  return "is of no known library: give it a room in tests/architecture/source_rules.cpp";
+}
+
+}  // namespace
+
+std::vector<std::string> rooms() {
+  std::vector<std::string> names;
+  for (const Room& room : kRooms) names.emplace_back(room.name);
+  return names;
+}
+
+std::vector<std::string> include_complaints(std::string_view path, std::string_view text) {
+  const Room* room = find_room(room_of(path));
+  if (room == nullptr) return {std::string(path) + ": src/ has no such room; give it a row in source_rules.cpp"};
+  std::vector<std::string> complaints;
+  std::istringstream lines{std::string(text)};
+  std::string line;
+  for (int number = 1; std::getline(lines, line); ++number) {
+    const Include include = include_of(line);
+    if (include.delimiter == 0) continue;
+    const bool own = include.delimiter == '"';
+    const std::string why = own ? own_complaint(*room, include.name) : library_complaint(*room, include.name);
+    if (!why.empty()) {
+      complaints.push_back(std::string(path) + ":" + std::to_string(number) + ": '" + std::string(include.name) + "' " +
+                           why);
+    }
+  }
+  return complaints;
+}
+
+std::vector<std::string> shape_complaints(std::string_view path, std::string_view text) {
+  constexpr int kMostLines = 500;
+  std::vector<std::string> complaints;
+  const std::string_view mark = path.ends_with(".lua")                               ? "--"
+                                : path.ends_with(".cmake") || path.ends_with(".txt") ? "#"
+                                                                                     : "//";
+  if (!text.starts_with(mark)) {
+    complaints.push_back(std::string(path) + ": does not open with a comment that says what it is");
+  }
+  const auto lines = std::count(text.begin(), text.end(), '\n');
+  if (lines > kMostLines) {
+    complaints.push_back(std::string(path) + ": has " + std::to_string(lines) + " lines, 500 are allowed");
+  }
+  return complaints;
+}
+
+std::vector<SourceFile> source_files(std::string_view folder, const std::vector<std::string>& endings) {
+  namespace fs = std::filesystem;
+  const fs::path root = LIMBER_SOURCE_DIR;
+  std::vector<SourceFile> files;
+  if (!fs::is_directory(root / folder)) return files;
+  for (const auto& entry : fs::recursive_directory_iterator(root / folder)) {
+    const std::string path = entry.path().lexically_relative(root).generic_string();
+    if (std::none_of(endings.begin(), endings.end(), [&](const std::string& e) { return path.ends_with(e); })) continue;
+    std::ifstream in(entry.path(), std::ios::binary);
+    files.push_back({path, {std::istreambuf_iterator<char>(in), {}}});
+  }
+  std::sort(files.begin(), files.end(), [](const SourceFile& a, const SourceFile& b) { return a.path < b.path; });
+  return files;
+}
+
+}  // namespace limber::rules

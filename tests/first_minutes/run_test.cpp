@@ -1,0 +1,213 @@
+// ./run on machines that lack something: each refusal has its text and its cure, and nothing is called that need not
+// be. The machine is made of small scripts in a folder that is the whole PATH, so the test changes nothing and asks no
+// network.
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <string>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+namespace limber {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct Answer {
+  int code = -1;
+  std::string text;
+  std::string calls;  ///< What apt-get, sudo and cmake were called with, one call a line.
+};
+
+/// A checkout with nothing but `run`, on a machine where all is installed; tests take away and spoil.
+class Machine {
+ public:
+  Machine() {
+    std::string pattern = (fs::temp_directory_path() / "limber_run_XXXXXX").string();
+    root_ = ::mkdtemp(pattern.data());
+    fs::create_directories(root_ / "bin");
+    fs::create_directories(root_ / "tree/.ci");
+    for (const char* file : {"run", ".ci/lib.sh", ".ci/packages"}) {
+      fs::copy_file(fs::path(LIMBER_SOURCE_DIR) / file, root_ / "tree" / file);
+    }
+    for (const char* real : {"bash", "env", "dirname", "cut", "grep", "awk", "sed", "tee", "mktemp", "rm", "mkdir",
+                             "cat", "head", "tail", "uname", "sh", "chmod"}) {
+      fs::create_symlink(
+          fs::exists(fs::path("/usr/bin") / real) ? fs::path("/usr/bin") / real : fs::path("/bin") / real,
+          root_ / "bin" / real);
+    }
+    write("os-release", "ID=debian\nVERSION_ID=12\nPRETTY_NAME='Debian GNU/Linux 12'\n");
+    program("id", "echo 0");
+    program("nproc", "echo 2");
+    program("g++", "echo 12");
+    // answers that every package it is asked for is installed
+    program("dpkg-query", "shift 2; for p in \"$@\"; do echo \"ii $p \"; done");
+    program("apt-get", "echo apt-get \"$@\" >>\"$CALLS\"");
+    program("cmake",
+            "echo cmake \"$@\" >>\"$CALLS\"\n"
+            "case $1 in\n"
+            "  --preset) echo \"CMAKE_HOME_DIRECTORY:INTERNAL=$PWD\" >build/CMakeCache.txt; : >build/build.ninja ;;\n"
+            "  --build) printf '#!/bin/sh\\necho \"limber $*\"\\n' >build/limber; chmod +x build/limber ;;\n"
+            "esac");
+  }
+  ~Machine() { fs::remove_all(root_); }
+  Machine(const Machine&) = delete;
+  Machine& operator=(const Machine&) = delete;
+
+  void write(const std::string& name, const std::string& text) const { std::ofstream(root_ / name) << text; }
+  void program(const std::string& name, const std::string& body) const {
+    fs::remove(root_ / "bin" / name);
+    write("bin/" + name, "#!/bin/sh\n" + body + "\n");
+    fs::permissions(root_ / "bin" / name, fs::perms::owner_all);
+  }
+  void without(const std::string& name) const { fs::remove(root_ / "bin" / name); }
+  void nothing_installed() const { program("dpkg-query", "exit 1"); }
+
+  Answer run(const std::string& arguments = "") const {
+    const std::string root = root_.string();
+    fs::remove(root_ / "calls");
+    const std::string command = "cd " + root + "/tree && /usr/bin/env -i PATH=" + root + "/bin TMPDIR=" + root +
+                                " CALLS=" + root + "/calls LIMBER_OS_RELEASE=" + root + "/os-release ./run " +
+                                arguments + " </dev/null >" + root + "/out 2>&1";
+    const int status = std::system(command.c_str());
+    return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, read("out"), read("calls")};
+  }
+
+ private:
+  std::string read(const std::string& name) const {
+    std::ifstream in(root_ / name);
+    return {std::istreambuf_iterator<char>(in), {}};
+  }
+  fs::path root_;
+};
+
+TEST(Run, BuildsAndPlaysAndSaysWhereItIs) {
+  const Machine machine;
+  const Answer first = machine.run("scripts/hello.lua --fast");
+  EXPECT_EQ(first.code, 0) << first.text;
+  EXPECT_TRUE(first.text.starts_with("run: Limber on Debian GNU/Linux 12\n")) << first.text;
+  EXPECT_TRUE(first.text.ends_with("limber play scripts/hello.lua --fast\n")) << first.text;
+  EXPECT_EQ(first.calls, "cmake --preset release -DLIMBER_TESTS=OFF\ncmake --build build --target limber -j 2\n");
+}
+
+TEST(Run, SecondTimeNeitherConfiguresNorCallsApt) {
+  const Machine machine;
+  ASSERT_EQ(machine.run().code, 0);
+  EXPECT_EQ(machine.run().calls, "cmake --build build --target limber -j 2\n");
+}
+
+TEST(Run, BuildOnlyDoesNotPlay) {
+  const Machine machine;
+  const Answer answer = machine.run("--build-only");
+  EXPECT_EQ(answer.code, 0);
+  EXPECT_TRUE(answer.text.ends_with("run: built: build/limber\n")) << answer.text;
+}
+
+TEST(Run, InstallsWhatIsMissingAsRoot) {
+  const Machine machine;
+  // all but two are there
+  machine.program("dpkg-query",
+                  "shift 2; for p in \"$@\"; do case $p in cmake|libfmt-dev) ;; *) echo \"ii $p \" ;; esac; done");
+  const Answer answer = machine.run();
+  EXPECT_EQ(answer.code, 0) << answer.text;
+  EXPECT_NE(answer.text.find("run: installing with apt: cmake libfmt-dev\n"), std::string::npos) << answer.text;
+  EXPECT_NE(answer.calls.find("apt-get update"), std::string::npos);
+  EXPECT_NE(answer.calls.find(" cmake libfmt-dev\n"), std::string::npos) << answer.calls;
+}
+
+TEST(Run, TriesOnForeignSystemsAndSaysSo) {
+  const Machine machine;
+  machine.write("os-release", "ID=ubuntu\nVERSION_ID=24.04\nPRETTY_NAME='Ubuntu 24.04'\n");
+  const Answer answer = machine.run();
+  EXPECT_EQ(answer.code, 0);
+  EXPECT_TRUE(answer.text.starts_with("run: Limber on Ubuntu 24.04: untested (Debian 12 is), trying\n")) << answer.text;
+}
+
+TEST(Run, StartsAfreshWhenTheCheckoutHasMoved) {
+  const Machine machine;
+  ASSERT_EQ(machine.run().code, 0);
+  machine.write("tree/build/CMakeCache.txt", "CMAKE_HOME_DIRECTORY:INTERNAL=/somewhere/else\n");
+  const Answer answer = machine.run();
+  EXPECT_EQ(answer.code, 0);
+  EXPECT_NE(answer.text.find("the checkout has moved"), std::string::npos) << answer.text;
+  EXPECT_NE(answer.calls.find("--preset release"), std::string::npos) << answer.calls;
+}
+
+/// One spoilt machine: what is wrong with it, and what ./run says. Every refusal ends with 3.
+struct Refusal {
+  const char* name;
+  void (*spoil)(const Machine&);
+  const char* text;
+  const char* cure;
+};
+
+class Refusals : public testing::TestWithParam<Refusal> {};
+
+TEST_P(Refusals, SayWhatAndTheCure) {
+  const Machine machine;
+  GetParam().spoil(machine);
+  const Answer answer = machine.run();
+  EXPECT_EQ(answer.code, 3) << answer.text;
+  EXPECT_NE(answer.text.find(std::string("run: ") + GetParam().text), std::string::npos) << answer.text;
+  EXPECT_NE(answer.text.find(std::string("cure: ") + GetParam().cure), std::string::npos) << answer.text;
+  EXPECT_EQ(answer.text.find("limber play"), std::string::npos) << "it must not play";
+}
+
+const Refusal kRefusals[] = {
+    {"no_sudo",
+     [](const Machine& m) {
+       m.nothing_installed();
+       m.program("id", "echo 1000");
+     },
+     "packages are missing, this is not root, and there is no sudo.",
+     "as root: apt-get update && apt-get install g++ cmake "},
+    {"no_terminal",
+     [](const Machine& m) {
+       m.nothing_installed();
+       m.program("id", "echo 1000");
+       m.program("sudo", "exec \"$@\"");
+     },
+     "packages are missing, this is not root, and there is no terminal to ask on.",
+     "sudo apt-get update && sudo apt-get"},
+    {"no_network",
+     [](const Machine& m) {
+       m.nothing_installed();
+       m.program("apt-get",
+                 "echo \"Err:1 http://deb.debian.org bookworm InRelease\"\n"
+                 "echo \"E: Temporary failure resolving 'deb.debian.org'\"; exit 100");
+     },
+     "apt cannot reach its servers, so nothing was installed", "connect to the network once"},
+    {"apt_fails",
+     [](const Machine& m) {
+       m.nothing_installed();
+       m.program("apt-get", "echo 'E: Unable to locate package libbullet-dev'; exit 100");
+     },
+     "apt could not install the packages", "mend what apt says above"},
+    {"no_apt",
+     [](const Machine& m) {
+       m.without("dpkg-query");
+       m.without("apt-get");
+       m.without("g++");
+     },
+     "this system has no apt, so nothing can be installed from here; not found: g++ ", "install them under the names"},
+    {"no_compiler", [](const Machine& m) { m.without("g++"); }, "there is no C++ compiler", "apt-get install g++"},
+    {"old_compiler", [](const Machine& m) { m.program("g++", "echo 10.2.1"); }, "g++ is version 10, Limber needs 12",
+     "install a newer g++"},
+    {"no_room", [](const Machine& m) { m.write("tree/build", "a file in its way"); }, "cannot write to ",
+     "work in a clone"},
+    {"configure_fails", [](const Machine& m) { m.program("cmake", "echo 'CMake Error: no glm'; exit 1"); },
+     "configuring the build failed", "mend what is said above"},
+    {"build_fails",
+     [](const Machine& m) { m.program("cmake", "case $1 in --build) exit 1 ;; esac; : >build/build.ninja"); },
+     "the build failed", "on a full disk"},
+};
+INSTANTIATE_TEST_SUITE_P(Run, Refusals, testing::ValuesIn(kRefusals),
+                         [](const testing::TestParamInfo<Refusal>& info) { return std::string(info.param.name); });
+
+}  // namespace
+}  // namespace limber
