@@ -25,8 +25,11 @@ constexpr std::array kUnits = {
     Unit{"N·s", "newton second"},
     Unit{"N/m", "newton per metre"},
     Unit{"N·s/m", "newton second per metre"},
+    Unit{"m/N", "metre per newton"},
+    Unit{"rad/(N·m)", "radian per newton metre"},
     Unit{"N·m/rad", "newton metre per radian"},
     Unit{"N·m·s/rad", "newton metre second per radian"},
+    Unit{"N·s/m | N·m·s/rad", "newton second per metre along, newton metre second per radian about the axis"},
     Unit{"1/s", "fraction lost per second"},
     Unit{"× real time", "simulated seconds per real second"},
 };

@@ -60,23 +60,29 @@ class Body {
   /// The root's link frame. Setting moves the whole body rigidly; velocities stay.
   Pose pose() const;
   void set_pose(const Pose& pose);
-  bool enabled() const { return enabled_; }
-  /// Takes the body out of the world, or back in: what health does, and `reset` undoes.
+  bool enabled() const;
+  /// Whether Bullet holds it now: what `enabled` said at the last effects.
+  bool in_world() const { return in_world_; }
+  /// Takes the body out of the world, or back in, before the next step: what health does, and `reset` undoes.
   void set_enabled(bool on);
   /// Back to the start pose, at rest, enabled; values stay.
   void reset();
   /// The present pose becomes the start pose.
   void take_start_pose();
 
+  /// A part's pose was set by hand: joints read it anew before the next step.
+  void note_moved() { moved_ = true; }
+
   void push_forces();
-  void tell(double tick_seconds);
+  void tell();
   std::uint64_t state_hash(std::uint64_t start) const;
 
  private:
   friend class World;
   void build(const std::shared_ptr<const BodyModel>& model, const BuildOptions& options);
+  void build_motor(Joint& joint, const JointModel& m, bool servo);
   void build_copy(const Body& source);
-  void follow_motors();
+  void settle_joints();
   void effect_enabled();
   void read_position(double* out) const;
   void write_position(const double* in);
@@ -97,12 +103,14 @@ class Body {
   std::vector<std::unique_ptr<Joint>> joints_;
   std::vector<std::unique_ptr<Motor>> motors_;
   std::vector<Motor*> followers_;
-  bool enabled_ = true;
   bool in_world_ = true;
+  bool moved_ = false;
+  bool fresh_ = true;  // made since the last step: where it is then is its start pose
 
   // health: the pose after the last good tick, and whether it was needed already
   std::vector<Pose> last_good_;
   bool restored_once_ = false;
+  bool broken_ = false;  // healed in this tick
 };
 
 }  // namespace limber

@@ -5,6 +5,7 @@
 #include <span>
 #include <vector>
 
+#include "base/id.h"
 #include "base/vec.h"
 #include "sim/bullet.h"
 
@@ -14,8 +15,8 @@ class Part;
 
 /// Two parts began to touch; `part` asked for reports.
 struct ContactEvent {
-  Part* part = nullptr;
-  Part* other = nullptr;
+  NodeId part;
+  NodeId other;
   double impulse = 0;  ///< Sum over the tick, N·s.
   Vec3 position{0};    ///< World, of the deepest point.
 };

@@ -23,17 +23,4 @@ struct Geometry {
 /// from the shapes' volume.
 std::shared_ptr<const Geometry> make_geometry(const std::vector<PlacedShape>& shapes, const Inertial& inertial);
 
-/// Bullet's vectors are single precision, ours double.
-inline btVector3 to_bt(const Vec3& v) {
-  return {static_cast<btScalar>(v.x), static_cast<btScalar>(v.y), static_cast<btScalar>(v.z)};
-}
-inline btQuaternion to_bt(const Quat& q) {
-  return {static_cast<btScalar>(q.x), static_cast<btScalar>(q.y), static_cast<btScalar>(q.z),
-          static_cast<btScalar>(q.w)};
-}
-inline btTransform to_bt(const Pose& p) { return {to_bt(p.rotation), to_bt(p.position)}; }
-inline Vec3 from_bt(const btVector3& v) { return {v.x(), v.y(), v.z()}; }
-inline Quat from_bt(const btQuaternion& q) { return quat_xyzw(q.x(), q.y(), q.z(), q.w()); }
-inline Pose from_bt(const btTransform& t) { return {from_bt(t.getOrigin()), glm::normalize(from_bt(t.getRotation()))}; }
-
 }  // namespace limber

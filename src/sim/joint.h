@@ -61,12 +61,12 @@ class Joint {
 
   /// After Bullet stepped, or poses were set: readouts into the live block.
   void tell();
-  /// Multi-turn angles forget their turns: after poses were set.
-  void forget_turns();
-
- private:
+  /// After poses were set by hand: reads them anew, turns as near as can be to those before.
+  void read_anew();
+  /// Limits, ERP and CFM of all axes into the constraint: the effect of their rows.
   void effect_limits();
 
+ private:
   Body& body_;
   NodeId id_;
   Part& parent_;

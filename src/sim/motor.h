@@ -33,9 +33,9 @@ class Motor {
   /// Before Bullet steps: a follower's target from its leader.
   void follow();
   /// After Bullet stepped: forces into the live block.
-  void tell(double tick_seconds);
+  void tell();
 
- private:
+  // What the rows do and read; public because the table, which is no member, names them.
   void effect_axes();
   void read_mode(double* out) const;
   void write_mode(const double* in);
@@ -44,12 +44,14 @@ class Motor {
   void read_speed(double* out) const;
   void write_speed(const double* in);
   Result<void> refuse_own_axis(const double* in) const;
-  void set_own(std::string_view linear_row, std::string_view angular_row, double value);
+
+ private:
+  void set_own(const Row& linear_row, const Row& angular_row, double value);
+  void say_contradiction(int axis);
+  void say_cap();
 
   Joint& joint_;
   NodeId id_;
-  Joint* leader_ = nullptr;
-  bool leader_sought_ = false;
   bool said_contradiction_ = false;
   bool said_cap_ = false;
 };

@@ -60,12 +60,14 @@ class Part {
   void tell();
   bool reports_contacts() const;
 
+  /// Pose and velocity of the store into Bullet: the effects of their rows, and of health.
+  void effect_pose();
+  void effect_velocity();
+
  private:
   void effect_mass();
   void effect_damping();
   void effect_surface();
-  void effect_pose();
-  void effect_velocity();
   void effect_reports();
   void read_center(double* out) const;
   Result<void> refuse_mass(const double* in) const;
@@ -81,7 +83,7 @@ class Part {
   Pose start_;
   Vec3 force_{0}, torque_{0}, impulse_{0}, angular_impulse_{0};
   bool is_static_ = false;
-  bool pushed_ = false;
+  bool reports_ = false;
 };
 
 }  // namespace limber

@@ -6,6 +6,7 @@
 #include <span>
 #include <string>
 #include <unordered_map>
+#include <utility>
 #include <vector>
 
 #include "params/store.h"
@@ -58,8 +59,8 @@ class World {
   void step();
   /// Effects and readouts without time passing: while paused, and before the first tick.
   void settle();
-  /// All bodies to their start poses, time 0.
-  void reset();
+  /// Whether sim:reset or /transport/reset asked for a reset since the last call.
+  bool take_reset_request() { return std::exchange(reset_asked_, false); }
   /// Removes every body and shape.
   void clear();
 
@@ -71,6 +72,9 @@ class World {
   std::uint64_t state_hash() const;
   const TickTimes& times() const { return times_; }
 
+  /// One a link, built once a model and shared by all its bodies.
+  const std::vector<std::shared_ptr<const Geometry>>& geometries_of(const std::shared_ptr<const BodyModel>& model);
+
   IslandWorld& bullet() { return *bullet_; }
   Contacts& contact_log() { return contacts_; }
 
@@ -79,7 +83,8 @@ class World {
   void effect_gravity();
   void effect_solver();
   void check_health();
-  void heal(Body& body, const char* what);
+  void heal(Body& body, const Part& part, const char* what);
+  static void after_internal_step(btDynamicsWorld* bullet, btScalar h);
   Result<void> name_is_free(NodeId group, std::string_view kind, std::string_view name) const;
   Result<void> act_reset(std::span<const double> args);
 
@@ -88,7 +93,11 @@ class World {
   std::unique_ptr<IslandWorld> bullet_;
   std::vector<std::unique_ptr<Shape>> shapes_;
   std::vector<std::unique_ptr<Body>> bodies_;
-  std::unordered_map<const BodyModel*, std::vector<std::shared_ptr<const Geometry>>> geometries_;
+  struct ModelGeometry {
+    std::shared_ptr<const BodyModel> model;  // keeps the key's address from being used again
+    std::vector<std::shared_ptr<const Geometry>> links;
+  };
+  std::unordered_map<const BodyModel*, ModelGeometry> geometries_;
   Contacts contacts_;
   TickTimes times_;
   std::uint64_t tick_ = 0;

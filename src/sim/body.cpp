@@ -1,0 +1,344 @@
+// Body: making, finding, moving its parts, joints and motors.
+#include "sim/body.h"
+
+#include <algorithm>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "base/random.h"
+#include "base/text.h"
+#include "sim/world.h"
+
+namespace limber {
+
+namespace {
+
+using namespace rows;
+
+Vec3 vec_at(const double* v) { return {v[0], v[1], v[2]}; }
+
+void put(double* to, const Vec3& v) {
+  to[0] = v.x;
+  to[1] = v.y;
+  to[2] = v.z;
+}
+
+template <class T>
+T* find_by_name(const Store& store, NodeId group, std::string_view name) {
+  const NodeId id = store.child(group, name);
+  return id.null() ? nullptr : static_cast<T*>(store.thing(id));
+}
+
+}  // namespace
+
+const Table& Body::table() {
+  static const Table table(
+      "body", "/physics/body/<body>", "",
+      {
+          state(view<&Body::read_position, &Body::write_position>(
+              vec3("position", "m", {0, 0, 0}, -1e4, 1e4,
+                   "The root's link frame, world; setting it moves the whole body rigidly."))),
+          state(view<&Body::read_rotation, &Body::write_rotation>(quat(
+              "rotation", "The root's link frame, world: x y z w; setting it turns the whole body about the root."))),
+          state(view<&Body::read_linear_velocity, &Body::write_linear_velocity>(
+              vec3("linear_velocity", "m/s", {0, 0, 0}, -1e4, 1e4,
+                   "The root's; setting it gives the whole body this motion."))),
+          state(view<&Body::read_angular_velocity, &Body::write_angular_velocity>(
+              vec3("angular_velocity", "rad/s", {0, 0, 0}, -1e4, 1e4,
+                   "The root's; setting it turns the whole body about the root."))),
+          live(state(effect<&Body::effect_enabled>(boolean(
+              "enabled", true, "False: out of the world, as health leaves a body that broke twice; reset enables.")))),
+          act<&Body::act_reset>(action("reset", 0, 0, "Back to the start pose, at rest.")),
+          act<&Body::act_remove>(action("remove", 0, 0, "Takes the body away.")),
+      });
+  return table;
+}
+
+Body::Body(World& world, NodeId group, std::string name)
+    : world_(world), id_(world.store().add(table(), group, std::move(name), this)) {
+  part_group_ = store().add_group(id_, "part");
+  joint_group_ = store().add_group(id_, "joint");
+  motor_group_ = store().add_group(id_, "motor");
+}
+
+Body::~Body() {
+  // joints let go of parts before those go
+  motors_.clear();
+  joints_.clear();
+  parts_.clear();
+  store().remove(id_);
+}
+
+const std::string& Body::name() const { return store().name(id_); }
+Store& Body::store() const { return world_.store(); }
+
+Part* Body::find_part(std::string_view name) const { return find_by_name<Part>(store(), part_group_, name); }
+Joint* Body::find_joint(std::string_view name) const { return find_by_name<Joint>(store(), joint_group_, name); }
+Motor* Body::find_motor(std::string_view name) const { return find_by_name<Motor>(store(), motor_group_, name); }
+
+Result<Pose> Body::link_pose(std::string_view name) const {
+  if (const Part* part = find_part(name)) return part->pose();
+  std::vector<std::string_view> names;
+  for (const auto& part : parts_) names.push_back(part->name());
+  if (model_ != nullptr) {
+    for (const MergedLink& merged : model_->merged) {
+      if (merged.name == name) return parts_[static_cast<std::size_t>(merged.link)]->pose() * merged.offset;
+      names.push_back(merged.name);
+    }
+  }
+  return Error{fmt::format("body '{}' has no link '{}'{}", this->name(), name, name_hint(name, names))};
+}
+
+Result<Part*> Body::add_part(std::string name, Shape& shape, double mass, const Pose& pose) {
+  if (const Result<void> free = world_.name_is_free(part_group_, "part", name); !free) return Error{free.error()};
+  if (shape.model().kind == ShapeKind::plane && mass > 0) {
+    return Error{
+        fmt::format("part '{}/{}' is a plane, which has mass 0 and never moves, not {} kg", this->name(), name, mass)};
+  }
+  if (shape.placed().empty()) {
+    return Error{fmt::format("compound '{}' is empty; add its children before a part is made of it", shape.name())};
+  }
+  auto part = std::make_unique<Part>(*this, part_group_, std::move(name), shape.geometry(), mass, pose);
+  part->set_shape(shape.id());
+  if (shape.model().kind == ShapeKind::plane) {
+    // two parts' values multiply: a plane leaves the other's as they are
+    store().tell(part->id(), Part::table().at("friction"))[0] = 1;
+    store().tell(part->id(), Part::table().at("restitution"))[0] = 1;
+  }
+  parts_.push_back(std::move(part));
+  return parts_.back().get();
+}
+
+Result<Joint*> Body::add_joint(std::string name, Part& parent, Part& child, JointType type, const Vec3& position,
+                               const Vec3& axis) {
+  if (const Result<void> free = world_.name_is_free(joint_group_, "joint", name); !free) return Error{free.error()};
+  const auto fault = [&](std::string_view what) {
+    return Error{fmt::format("joint '{}/{}': {}", this->name(), name, what)};
+  };
+  if (&parent == &child) return fault("a part can't hang on itself");
+  if (&parent.body() != this || &child.body() != this) return fault("both parts must be of this body");
+  if (glm::length(axis) < 1e-9) return fault("the axis must not be zero");
+  if (parent.is_static() && child.is_static()) return fault("both parts are static; one must have mass");
+  // z of the joint's frame is the axis; about it the frame is turned as little as possible from the world's
+  const Vec3 z = normalized(axis);
+  const Vec3 side = std::abs(z.x) < 0.9 ? Vec3(1, 0, 0) : Vec3(0, 1, 0);
+  const Vec3 y = normalized(glm::cross(z, side));
+  const bool upright = z.z > 1 - 1e-12;
+  const Pose frame{position, upright ? quat_identity() : glm::normalize(glm::quat_cast(Mat3(glm::cross(y, z), y, z)))};
+  JointSpec spec;
+  spec.type = type;
+  spec.frame_in_parent = parent.pose().inverse() * frame;
+  spec.frame_in_child = child.pose().inverse() * frame;
+  store().apply_marks();  // the parts stand where they were put before the joint reads its zero
+  joints_.push_back(std::make_unique<Joint>(*this, joint_group_, std::move(name), parent, child, spec));
+  joints_.back()->read_anew();
+  return joints_.back().get();
+}
+
+Result<Motor*> Body::add_motor(Joint& joint) {
+  const auto fault = [&](std::string_view what) {
+    return Error{fmt::format("joint '{}/{}' {}", name(), joint.name(), what)};
+  };
+  if (&joint.body() != this) return fault("belongs to another body");
+  if (joint.motor() != nullptr) return fault("has a motor already");
+  if (joint.type() == JointType::fixed) return fault("is fixed and takes no motor");
+  motors_.push_back(std::make_unique<Motor>(joint, motor_group_));
+  if (joint.spec().mimic) followers_.push_back(motors_.back().get());
+  return motors_.back().get();
+}
+
+void Body::build(const std::shared_ptr<const BodyModel>& model, const BuildOptions& options) {
+  model_ = model;
+  Pose root = model->links.front().start;
+  if (options.position) root.position = *options.position;
+  if (options.rotation) root.rotation = *options.rotation;
+  const Pose moved = root * model->links.front().start.inverse();
+  const auto& geometries = world_.geometries_of(model);
+  for (std::size_t i = 0; i < model->links.size(); i++) {
+    const LinkModel& link = model->links[i];
+    parts_.push_back(
+        std::make_unique<Part>(*this, part_group_, link.name, geometries[i], link.inertial.mass, moved * link.start));
+  }
+  store().apply_marks();
+  for (const JointModel& m : model->joints) {
+    JointSpec spec{m.type, m.frame_in_parent, m.frame_in_child, m.limited, m.lower, m.upper, m.friction, {}};
+    if (m.mimic >= 0)
+      spec.mimic = Mimic{model->joints[static_cast<std::size_t>(m.mimic)].name, m.mimic_multiplier, m.mimic_offset};
+    Part& parent = *parts_[static_cast<std::size_t>(m.parent)];
+    Part& child = *parts_[static_cast<std::size_t>(m.child)];
+    joints_.push_back(std::make_unique<Joint>(*this, joint_group_, m.name, parent, child, spec));
+    Joint& joint = *joints_.back();
+    joint.effect_limits();
+    joint.constraint().reset(joint.own_axis() == 5 ? Vec3(0, 0, m.start) : Vec3(0));
+    joint.tell();
+    if (m.type != JointType::fixed) build_motor(joint, m, options.servo_motors);
+  }
+}
+
+void Body::build_motor(Joint& joint, const JointModel& m, bool servo) {
+  motors_.push_back(std::make_unique<Motor>(joint, motor_group_));
+  Motor& motor = *motors_.back();
+  if (joint.spec().mimic) followers_.push_back(&motor);
+  const bool linear = joint.own_axis() == 2;
+  store().tell(motor.id(), Motor::table().at(linear ? "max_linear_force" : "max_angular_force"))[2] = m.effort;
+  store().tell(motor.id(), Motor::table().at(linear ? "linear_velocity" : "angular_velocity"))[2] = m.velocity;
+  store().tell(motor.id(), Motor::table().at("damping"))[0] = m.damping;
+  // planar and floating joints move in several axes; holding one of them is nobody's wish
+  const bool holds = servo && m.type != JointType::floating && m.type != JointType::planar;
+  if (!holds) motor.set_mode(MotorMode::off);
+}
+
+void Body::build_copy(const Body& source) {
+  model_ = source.model_;
+  const auto copy_values = [&](NodeId from, NodeId to, const Table& table) {
+    std::copy_n(std::as_const(store()).kept_block(from), table.kept_width(), store().kept_block(to));
+    std::copy_n(store().live_block(from), table.live_width(), store().live_block(to));
+  };
+  for (const auto& from : source.parts_) {
+    const double mass = store().values(from->id(), Part::table().at("mass"))[0];
+    parts_.push_back(std::make_unique<Part>(*this, part_group_, from->name(), from->geometry(), mass, from->pose()));
+    Part& part = *parts_.back();
+    part.set_shape(from->shape());
+    part.set_start_pose(from->start_pose());
+    copy_values(from->id(), part.id(), Part::table());
+  }
+  store().apply_marks();
+  for (const auto& from : source.joints_) {
+    Part& parent = *find_part(from->parent().name());
+    Part& child = *find_part(from->child().name());
+    joints_.push_back(std::make_unique<Joint>(*this, joint_group_, from->name(), parent, child, from->spec()));
+    Joint& joint = *joints_.back();
+    copy_values(from->id(), joint.id(), Joint::table());
+    joint.effect_limits();
+    joint.constraint().reset(from->constraint().angles());
+    if (from->motor() == nullptr) continue;
+    motors_.push_back(std::make_unique<Motor>(joint, motor_group_));
+    if (joint.spec().mimic) followers_.push_back(motors_.back().get());
+    copy_values(from->motor()->id(), motors_.back()->id(), Motor::table());
+  }
+}
+
+Pose Body::pose() const { return parts_.empty() ? Pose{} : root()->pose(); }
+
+void Body::set_pose(const Pose& pose) {
+  if (parts_.empty()) return;
+  const Pose moved = pose * this->pose().inverse();
+  for (const auto& part : parts_) part->set_pose(part.get() == root() ? pose : moved * part->pose());
+}
+
+bool Body::enabled() const { return store().values(id_, table().at("enabled"))[0] != 0; }
+
+void Body::set_enabled(bool on) {
+  const double value = on ? 1 : 0;
+  (void)store().set(id_, table().at("enabled"), {&value, 1});
+}
+
+void Body::effect_enabled() {
+  if (enabled() == in_world_) return;
+  in_world_ = enabled();
+  IslandWorld& bullet = world_.bullet();
+  if (in_world_) {
+    for (const auto& part : parts_) bullet.addRigidBody(&part->rigid());
+    for (const auto& joint : joints_) bullet.addConstraint(&joint->constraint());
+    moved_ = true;
+  } else {
+    for (const auto& joint : joints_) bullet.removeConstraint(&joint->constraint());
+    for (const auto& part : parts_) bullet.removeRigidBody(&part->rigid());
+  }
+}
+
+void Body::reset() {
+  for (const auto& part : parts_) {
+    part->set_pose(part->start_pose());
+    part->set_velocity(Vec3(0), Vec3(0));
+    part->clear_forces();
+  }
+  restored_once_ = false;
+  last_good_.clear();
+  set_enabled(true);
+}
+
+void Body::take_start_pose() {
+  for (const auto& part : parts_) part->set_start_pose(part->pose());
+}
+
+void Body::settle_joints() {
+  if (!std::exchange(moved_, false)) return;
+  for (const auto& joint : joints_) joint->read_anew();
+}
+
+void Body::push_forces() {
+  for (Motor* motor : followers_) motor->follow();
+  for (const auto& part : parts_) part->push_forces();
+}
+
+void Body::tell() {
+  for (const auto& part : parts_) part->tell();
+  for (const auto& joint : joints_) joint->tell();
+  for (const auto& motor : motors_) motor->tell();
+}
+
+std::uint64_t Body::state_hash(std::uint64_t hash) const {
+  const auto mix = [&](const void* bytes, std::size_t size) {
+    hash = hash_bytes({static_cast<const char*>(bytes), size}, hash);
+  };
+  const auto mix_kept = [&](NodeId id, const Table& table) {
+    mix(std::as_const(store()).kept_block(id), table.kept_width() * sizeof(double));
+  };
+  hash = hash_bytes(name(), hash);
+  const bool on = enabled();
+  mix(&on, sizeof on);
+  for (const auto& part : parts_) {
+    const btTransform& t = part->rigid().getWorldTransform();
+    for (int i = 0; i < 3; i++) mix(t.getBasis()[i].m_floats, 3 * sizeof(btScalar));
+    mix(t.getOrigin().m_floats, 3 * sizeof(btScalar));
+    mix(part->rigid().getLinearVelocity().m_floats, 3 * sizeof(btScalar));
+    mix(part->rigid().getAngularVelocity().m_floats, 3 * sizeof(btScalar));
+    mix_kept(part->id(), Part::table());
+  }
+  for (const auto& joint : joints_) mix_kept(joint->id(), Joint::table());
+  for (const auto& motor : motors_) mix_kept(motor->id(), Motor::table());
+  return hash;
+}
+
+void Body::read_position(double* out) const { put(out, pose().position); }
+void Body::write_position(const double* in) { set_pose({vec_at(in), pose().rotation}); }
+
+void Body::read_rotation(double* out) const {
+  const Quat q = pose().rotation;
+  out[0] = q.x;
+  out[1] = q.y;
+  out[2] = q.z;
+  out[3] = q.w;
+}
+
+void Body::write_rotation(const double* in) { set_pose({pose().position, quat_xyzw(in[0], in[1], in[2], in[3])}); }
+
+void Body::read_linear_velocity(double* out) const { put(out, parts_.empty() ? Vec3(0) : root()->linear_velocity()); }
+
+void Body::write_linear_velocity(const double* in) {
+  for (const auto& part : parts_) part->set_velocity(vec_at(in), part->angular_velocity());
+}
+
+void Body::read_angular_velocity(double* out) const { put(out, parts_.empty() ? Vec3(0) : root()->angular_velocity()); }
+
+void Body::write_angular_velocity(const double* in) {
+  if (parts_.empty()) return;
+  const Vec3 omega = vec_at(in);
+  const Vec3 pivot = root()->center();
+  const Vec3 velocity = root()->linear_velocity();
+  for (const auto& part : parts_) part->set_velocity(velocity + glm::cross(omega, part->center() - pivot), omega);
+}
+
+Result<void> Body::act_reset(std::span<const double>) {
+  reset();
+  return {};
+}
+
+Result<void> Body::act_remove(std::span<const double>) {
+  world_.remove_body(*this);
+  return {};
+}
+
+}  // namespace limber

@@ -1,0 +1,68 @@
+// Contacts: pairs of reporting parts over the tick's internal steps.
+#include "sim/contacts.h"
+
+#include <algorithm>
+
+#include "sim/part.h"
+
+namespace limber {
+
+namespace {
+Part* part_of(const btCollisionObject* object) { return static_cast<Part*>(object->getUserPointer()); }
+}  // namespace
+
+Contacts::Pair& Contacts::pair_of(Part* a, Part* b) {
+  // a handful of pairs at a time: a plain search
+  for (Pair& pair : pairs_) {
+    if (pair.a == a && pair.b == b) return pair;
+  }
+  pairs_.push_back({a, b, 0, 0, Vec3(0), false, false});
+  return pairs_.back();
+}
+
+void Contacts::begin_tick() {
+  begun_.clear();
+  for (Pair& pair : pairs_) {
+    pair.before = pair.now;
+    pair.now = false;
+    pair.impulse = 0;
+    pair.depth = 1;
+  }
+}
+
+void Contacts::gather(btDispatcher& dispatcher) {
+  if (reporting_ <= 0) return;
+  for (int i = 0; i < dispatcher.getNumManifolds(); i++) {
+    const btPersistentManifold& manifold = *dispatcher.getManifoldByIndexInternal(i);
+    Part* a = part_of(manifold.getBody0());
+    Part* b = part_of(manifold.getBody1());
+    if (manifold.getNumContacts() == 0 || a == nullptr || b == nullptr) continue;
+    if (!a->reports_contacts() && !b->reports_contacts()) continue;
+    for (int k = 0; k < manifold.getNumContacts(); k++) {
+      const btManifoldPoint& point = manifold.getContactPoint(k);
+      if (point.getDistance() > 0 && point.getAppliedImpulse() <= 0) continue;
+      Pair& pair = pair_of(a, b);
+      pair.now = true;
+      pair.impulse += point.getAppliedImpulse();
+      if (point.getDistance() < pair.depth) {
+        pair.depth = point.getDistance();
+        pair.position = from_bt(point.getPositionWorldOnB());
+      }
+    }
+  }
+}
+
+void Contacts::end_tick() {
+  for (const Pair& pair : pairs_) {
+    if (!pair.now || pair.before) continue;
+    if (pair.a->reports_contacts()) begun_.push_back({pair.a->id(), pair.b->id(), pair.impulse, pair.position});
+    if (pair.b->reports_contacts()) begun_.push_back({pair.b->id(), pair.a->id(), pair.impulse, pair.position});
+  }
+  std::erase_if(pairs_, [](const Pair& pair) { return !pair.now && !pair.before; });
+}
+
+void Contacts::forget(const Part& part) {
+  std::erase_if(pairs_, [&](const Pair& pair) { return pair.a == &part || pair.b == &part; });
+}
+
+}  // namespace limber

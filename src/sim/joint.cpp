@@ -1,0 +1,196 @@
+// Joint: its rows, and the constraint behind them.
+#include "sim/joint.h"
+
+#include <array>
+
+#include "base/text.h"
+#include "sim/body.h"
+#include "sim/world.h"
+
+namespace limber {
+
+namespace {
+
+using namespace rows;
+
+constexpr std::array<std::string_view, 7> kTypes = {"fixed",  "revolute", "continuous", "prismatic",
+                                                    "planar", "floating", "spherical"};
+
+struct LiveRows {
+  const Row *value, *speed, *angles, *offsets, *relrot, *position, *rotation, *axis;
+};
+
+const LiveRows& live_rows() {
+  static const auto at = [](const char* name) { return &Joint::table().at(name); };
+  static const LiveRows found{at("value"),  at("speed"),    at("angles"),   at("offsets"),
+                              at("relrot"), at("position"), at("rotation"), at("axis")};
+  return found;
+}
+
+struct LimitRows {
+  std::array<const Row*, 2> lower, upper, stop_erp, stop_cfm;  // linear, angular
+};
+
+const LimitRows& limit_rows() {
+  static const auto at = [](const char* name) { return &Joint::table().at(name); };
+  static const LimitRows found{{at("linear_lower_limit"), at("angular_lower_limit")},
+                               {at("linear_upper_limit"), at("angular_upper_limit")},
+                               {at("linear_stop_erp"), at("angular_stop_erp")},
+                               {at("linear_stop_cfm"), at("angular_stop_cfm")}};
+  return found;
+}
+
+void put(double* to, const Vec3& v) {
+  to[0] = v.x;
+  to[1] = v.y;
+  to[2] = v.z;
+}
+
+// the axes that a type leaves free, before limits; 0..2 linear, 3..5 angular
+bool free_by_type(JointType type, int axis) {
+  switch (type) {
+    case JointType::revolute:
+    case JointType::continuous:
+      return axis == 5;
+    case JointType::prismatic:
+      return axis == 2;
+    case JointType::planar:
+      return axis == 0 || axis == 1 || axis == 5;
+    case JointType::spherical:
+      return axis >= 3;
+    case JointType::floating:
+      return true;
+    case JointType::fixed:
+      return false;
+  }
+  return false;
+}
+
+Row limit(std::string name, const char* unit, double reach, std::string doc) {
+  return axes(effect<&Joint::effect_limits>(vec3(std::move(name), unit, {0, 0, 0}, -reach, reach, std::move(doc))));
+}
+
+Row stop(std::string name, const char* unit, double initial, std::string doc) {
+  return axes(
+      effect<&Joint::effect_limits>(vec3(std::move(name), unit, {initial, initial, initial}, 0, 1, std::move(doc))));
+}
+
+}  // namespace
+
+std::string_view joint_type_name(JointType type) { return kTypes[static_cast<std::size_t>(type)]; }
+
+std::optional<JointType> joint_type_named(std::string_view name) {
+  for (std::size_t i = 0; i < kTypes.size(); i++) {
+    if (same_name(kTypes[i], name)) return static_cast<JointType>(i);
+  }
+  return {};
+}
+
+const Table& Joint::table() {
+  static const Table table(
+      "joint", "/physics/body/<body>/joint/<joint>", "/physics/joint",
+      {
+          limit("linear_lower_limit", "m", 1e4,
+                "Lower limit along each axis; equal to the upper: locked; above it: free."),
+          limit("linear_upper_limit", "m", 1e4, "Upper limit along each axis."),
+          limit("angular_lower_limit", "rad", 1e4,
+                "Lower limit about each axis; equal to the upper: locked; above it: free."),
+          limit("angular_upper_limit", "rad", 1e4, "Upper limit about each axis; limits may lie beyond ±π."),
+          stop("linear_stop_erp", "", 0.2, "Part of a lock's or limit's error that one internal step repairs, along."),
+          stop("linear_stop_cfm", "m/N", 0, "How far a lock or limit yields per load, along."),
+          stop("angular_stop_erp", "", 0.2, "Part of a lock's or limit's error that one internal step repairs, about."),
+          stop("angular_stop_cfm", "rad/(N·m)", 0, "How far a lock or limit yields per load, about."),
+          live(readout(number("value", "m | rad", 0, -kUnbounded, kUnbounded, "Where the own axis stands."))),
+          live(readout(number("speed", "m/s | rad/s", 0, -kUnbounded, kUnbounded, "How fast the own axis moves."))),
+          live(readout(vec3("angles", "rad", {0, 0, 0}, -kUnbounded, kUnbounded,
+                            "Angles in the joint's own order, the one its limits and servos act in."))),
+          live(readout(vec3("offsets", "m", {0, 0, 0}, -kUnbounded, kUnbounded,
+                            "Shift of the child along the parent's joint axes."))),
+          live(readout(vec3("relrot", "rad", {0, 0, 0}, -kUnbounded, kUnbounded,
+                            "Child's joint frame in the parent's, R = Rz·Ry·Rx, as the stream has it."))),
+          live(readout(vec3("position", "m", {0, 0, 0}, -kUnbounded, kUnbounded,
+                            "The joint's point on the parent's side, world."))),
+          live(readout(quat("rotation", "The child's joint frame, world, its own rotation included: x y z w."))),
+          live(readout(vec3("axis", "", {0, 0, 1}, -1, 1, "The own axis, world."))),
+      });
+  return table;
+}
+
+Joint::Joint(Body& body, NodeId group, std::string name, Part& parent, Part& child, const JointSpec& spec)
+    : body_(body),
+      id_(body.store().add(table(), group, std::move(name), this)),
+      parent_(parent),
+      child_(child),
+      spec_(spec),
+      constraint_(std::make_unique<JointConstraint>(parent.rigid(), child.rigid(),
+                                                    to_bt(parent.geometry()->frame.inverse() * spec.frame_in_parent),
+                                                    to_bt(child.geometry()->frame.inverse() * spec.frame_in_child))) {
+  Store& store = body_.store();
+  for (int axis = 0; axis < 6; axis++) {
+    const auto half = static_cast<std::size_t>(axis / 3);
+    const bool limits_it = axis == own_axis() && spec.limited;
+    const bool is_free = free_by_type(spec.type, axis) && !limits_it;
+    store.tell(id_, *limit_rows().lower[half])[axis % 3] = limits_it ? spec.lower : is_free ? 1 : 0;
+    store.tell(id_, *limit_rows().upper[half])[axis % 3] = limits_it ? spec.upper : is_free ? -1 : 0;
+  }
+  body_.world().bullet().addConstraint(constraint_.get());
+}
+
+Joint::~Joint() {
+  if (body_.in_world()) body_.world().bullet().removeConstraint(constraint_.get());
+  body_.store().remove(id_);
+}
+
+const std::string& Joint::name() const { return body_.store().name(id_); }
+
+int Joint::own_axis() const {
+  if (spec_.type == JointType::fixed) return -1;
+  return spec_.type == JointType::prismatic ? 2 : 5;
+}
+
+double Joint::value() const { return own_axis() < 0 ? 0 : constraint_->value(own_axis()); }
+
+void Joint::effect_limits() {
+  const Store& store = body_.store();
+  for (int axis = 0; axis < 6; axis++) {
+    const auto half = static_cast<std::size_t>(axis / 3);
+    const auto number = [&](const std::array<const Row*, 2>& rows) {
+      return static_cast<float>(store.values(id_, *rows[half])[axis % 3]);
+    };
+    AxisSettings settings = constraint_->axis(axis);
+    settings.lower = number(limit_rows().lower);
+    settings.upper = number(limit_rows().upper);
+    settings.stop_erp = number(limit_rows().stop_erp);
+    settings.stop_cfm = number(limit_rows().stop_cfm);
+    settings.friction = axis == own_axis() ? static_cast<float>(spec_.friction) : 0;
+    constraint_->set_axis(axis, settings);
+  }
+}
+
+void Joint::read_anew() {
+  constraint_->reset(constraint_->angles());
+  tell();
+}
+
+void Joint::tell() {
+  double* live = body_.store().live_block(id_);
+  const LiveRows& rows = live_rows();
+  const Pose parent_frame = constraint_->parent_frame();
+  const Pose child_frame = constraint_->child_frame();
+  const int own = own_axis();
+  live[rows.value->offset] = value();
+  live[rows.speed->offset] = own < 0 ? 0 : constraint_->rate(own);
+  put(live + rows.angles->offset, constraint_->angles());
+  put(live + rows.offsets->offset, constraint_->offsets());
+  put(live + rows.relrot->offset, constraint_->relrot());
+  put(live + rows.position->offset, parent_frame.position);
+  const Quat& q = child_frame.rotation;
+  double* rotation = live + rows.rotation->offset;
+  rotation[0] = q.x;
+  rotation[1] = q.y;
+  rotation[2] = q.z;
+  rotation[3] = q.w;
+  put(live + rows.axis->offset, parent_frame.rotation * Vec3(0, 0, 1));
+}
+
+}  // namespace limber

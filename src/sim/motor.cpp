@@ -1,0 +1,273 @@
+// Motor: its rows, and what of them is in force on each axis.
+#include "sim/motor.h"
+
+#include <array>
+#include <cmath>
+#include <utility>
+
+#include "base/log.h"
+#include "sim/body.h"
+#include "sim/world.h"
+
+namespace limber {
+
+namespace {
+
+using namespace rows;
+
+// the rows of one kind for linear and angular axes
+struct AxisRows {
+  std::array<const Row*, 2> active, velocity, max_force, servo_active, servo_position, spring_active, rest, stiffness,
+      damping, stiffness_applied, damping_applied;
+  const Row *bounce, *passive_damping, *applied_force, *applied_torque;
+};
+
+const AxisRows& axis_rows() {
+  static const auto at = [](const char* name) { return &Motor::table().at(name); };
+  static const AxisRows found{{at("linear_active"), at("angular_active")},
+                              {at("linear_velocity"), at("angular_velocity")},
+                              {at("max_linear_force"), at("max_angular_force")},
+                              {at("linear_servo_active"), at("angular_servo_active")},
+                              {at("linear_servo_position"), at("angular_servo_position")},
+                              {at("linear_spring_active"), at("angular_spring_active")},
+                              {at("linear_spring_rest_length"), at("angular_spring_rest_length")},
+                              {at("linear_spring_stiffness"), at("angular_spring_stiffness")},
+                              {at("linear_spring_damping"), at("angular_spring_damping")},
+                              {at("linear_spring_stiffness_applied"), at("angular_spring_stiffness_applied")},
+                              {at("linear_spring_damping_applied"), at("angular_spring_damping_applied")},
+                              at("bounce"),
+                              at("damping"),
+                              at("applied_force"),
+                              at("applied_torque")};
+  return found;
+}
+
+Row axis_flags(std::string name, std::string doc) {
+  return axes(effect<&Motor::effect_axes>(flags3(std::move(name), {false, false, false}, std::move(doc))));
+}
+
+Row axis_numbers(std::string name, const char* unit, double initial, double min, double max, std::string doc) {
+  return axes(
+      effect<&Motor::effect_axes>(vec3(std::move(name), unit, {initial, initial, initial}, min, max, std::move(doc))));
+}
+
+Row applied(std::string name, const char* unit, std::string doc) {
+  return live(readout(vec3(std::move(name), unit, {0, 0, 0}, -kUnbounded, kUnbounded, std::move(doc))));
+}
+
+// the nine rows of the linear or the angular axes
+void add_axes(std::vector<Row>& out, const std::string& side, bool angular) {
+  const char* length = angular ? "rad" : "m";
+  const char* speed = angular ? "rad/s" : "m/s";
+  const char* force = angular ? "N·m" : "N";
+  const char* stiffness = angular ? "N·m/rad" : "N/m";
+  const char* damping = angular ? "N·m·s/rad" : "N·s/m";
+  const std::string where = angular ? "about each axis" : "along each axis";
+  out.push_back(axis_flags(side + "_active", "Motor on " + where + ": a spin, or a servo when that is active too."));
+  out.push_back(
+      axis_numbers(side + "_velocity", speed, 0, -1e4, 1e4,
+                   "Speed of a spin " + where + "; how fast a servo may go (0: as fast as its force allows)."));
+  out.push_back(
+      axis_numbers("max_" + side + "_force", force, 10000, 0, 1e9, "Most that a spin or servo applies " + where + "."));
+  out.push_back(axis_flags(side + "_servo_active", "Servo on " + where + " (needs the motor active)."));
+  out.push_back(axis_numbers(side + "_servo_position", length, 0, -1e4, 1e4, "Where a servo goes " + where + "."));
+  out.push_back(axis_flags(side + "_spring_active", "Spring on " + where + "; spin and servo are off then."));
+  out.push_back(
+      axis_numbers(side + "_spring_rest_length", length, 0, -1e4, 1e4, "Where a spring rests " + where + "."));
+  out.push_back(axis_numbers(side + "_spring_stiffness", stiffness, 0, 0, 1e6, "Spring stiffness " + where + "."));
+  out.push_back(axis_numbers(side + "_spring_damping", damping, 0, 0, 1e6, "Spring damping " + where + "."));
+  out.push_back(applied(side + "_spring_stiffness_applied", stiffness,
+                        "Stiffness in force " + where + ", held stable for the step."));
+  out.push_back(applied(side + "_spring_damping_applied", damping, "Spring damping in force " + where + "."));
+}
+
+}  // namespace
+
+const Table& Motor::table() {
+  static const Table table = [] {
+    std::vector<Row> list;
+    list.push_back(refuse<&Motor::refuse_own_axis>(state(view<&Motor::read_mode, &Motor::write_mode>(
+        choice("mode", {"off", "spin", "servo", "spring"}, 2,
+               "What is in force on the own axis; setting it sets the three flags.")))));
+    list.push_back(refuse<&Motor::refuse_own_axis>(state(view<&Motor::read_target, &Motor::write_target>(
+        number("target", "m | rad", 0, -1e4, 1e4, "Where the own axis's servo or spring goes.")))));
+    list.push_back(refuse<&Motor::refuse_own_axis>(state(view<&Motor::read_speed, &Motor::write_speed>(
+        number("speed", "m/s | rad/s", 0, -1e4, 1e4, "Speed of the own axis's spin; how fast its servo may go.")))));
+    list.push_back(effect<&Motor::effect_axes>(
+        number("bounce", "", 0, 0, 1, "What a limit gives back: met at speed v, it is left at −bounce·v.")));
+    list.push_back(effect<&Motor::effect_axes>(
+        number("damping", "N·s/m | N·m·s/rad", 0, 0, 1e6, "Passive damping of every free axis in any mode.")));
+    add_axes(list, "linear", false);
+    add_axes(list, "angular", true);
+    list.push_back(
+        applied("applied_force", "N", "What motors and springs applied along each axis, mean of the last tick."));
+    list.push_back(
+        applied("applied_torque", "N·m", "What motors and springs applied about each axis, mean of the last tick."));
+    return Table("motor", "/physics/body/<body>/motor/<motor>", "/physics/motor", std::move(list));
+  }();
+  return table;
+}
+
+Motor::Motor(Joint& joint, NodeId group)
+    : joint_(joint), id_(joint.body().store().add(table(), group, joint.name(), this)) {
+  Store& store = joint_.body().store();
+  const int own = joint_.own_axis();
+  if (own >= 0) {
+    const auto half = static_cast<std::size_t>(own / 3);
+    store.tell(id_, *axis_rows().active[half])[own % 3] = 1;
+    store.tell(id_, *axis_rows().servo_active[half])[own % 3] = 1;
+    store.tell(id_, *axis_rows().servo_position[half])[own % 3] = joint_.value();
+  }
+  joint_.set_motor(this);
+}
+
+Motor::~Motor() {
+  joint_.set_motor(nullptr);
+  joint_.body().store().remove(id_);
+}
+
+MotorMode Motor::mode(int axis) const {
+  const Store& store = joint_.body().store();
+  const auto half = static_cast<std::size_t>(axis / 3);
+  const auto flag = [&](const std::array<const Row*, 2>& rows) {
+    return store.values(id_, *rows[half])[axis % 3] != 0;
+  };
+  if (flag(axis_rows().spring_active)) return MotorMode::spring;
+  if (!flag(axis_rows().active)) return MotorMode::off;
+  return flag(axis_rows().servo_active) ? MotorMode::servo : MotorMode::spin;
+}
+
+void Motor::set_own(const Row& linear_row, const Row& angular_row, double value) {
+  const int own = joint_.own_axis();
+  if (own < 0) return;
+  const Row& row = own < 3 ? linear_row : angular_row;
+  Store& store = joint_.body().store();
+  std::array<double, 3> values{};
+  store.get(id_, row, values.data());
+  values[static_cast<std::size_t>(own % 3)] = value;
+  (void)store.set(id_, row, values);  // the view's own row has checked the number already
+}
+
+void Motor::set_mode(MotorMode mode) {
+  const AxisRows& rows = axis_rows();
+  set_own(*rows.spring_active[0], *rows.spring_active[1], mode == MotorMode::spring ? 1 : 0);
+  set_own(*rows.active[0], *rows.active[1], mode == MotorMode::spin || mode == MotorMode::servo ? 1 : 0);
+  set_own(*rows.servo_active[0], *rows.servo_active[1], mode == MotorMode::servo ? 1 : 0);
+}
+
+void Motor::set_target(double target) {
+  const AxisRows& rows = axis_rows();
+  set_own(*rows.servo_position[0], *rows.servo_position[1], target);
+  set_own(*rows.rest[0], *rows.rest[1], target);
+}
+
+void Motor::follow() {
+  if (!joint_.spec().mimic) return;
+  const Mimic& mimic = *joint_.spec().mimic;
+  const Joint* leader = joint_.body().find_joint(mimic.leader);
+  if (leader == nullptr) return;
+  set_target(mimic.multiplier * leader->value() + mimic.offset);
+  effect_axes();
+}
+
+void Motor::effect_axes() {
+  const Store& store = joint_.body().store();
+  JointConstraint& constraint = joint_.constraint();
+  const AxisRows& rows = axis_rows();
+  for (int axis = 0; axis < 6; axis++) {
+    const auto half = static_cast<std::size_t>(axis / 3);
+    const auto number = [&](const std::array<const Row*, 2>& r) {
+      return static_cast<float>(store.values(id_, *r[half])[axis % 3]);
+    };
+    AxisSettings settings = constraint.axis(axis);
+    settings.drive = static_cast<AxisDrive>(mode(axis));
+    settings.velocity = number(rows.velocity);
+    settings.max_force = number(rows.max_force);
+    settings.target = number(rows.servo_position);
+    settings.rest = number(rows.rest);
+    settings.stiffness = number(rows.stiffness);
+    settings.spring_damping = number(rows.damping);
+    constraint.set_axis(axis, settings);
+    if (settings.drive == AxisDrive::spring && number(rows.active) != 0) say_contradiction(axis);
+  }
+  constraint.set_bounce(store.values(id_, *rows.bounce)[0]);
+  constraint.set_damping(store.values(id_, *rows.passive_damping)[0]);
+}
+
+void Motor::say_contradiction(int axis) {
+  if (std::exchange(said_contradiction_, true)) return;
+  const char* const names[] = {"linear x", "linear y", "linear z", "angular x", "angular y", "angular z"};
+  log_warning(
+      "motor '{}/{}': spring_active and active are both on for {}; the spring is in force, spin and servo are off",
+      joint_.body().name(), name(), names[axis]);
+}
+
+void Motor::say_cap() {
+  if (std::exchange(said_cap_, true)) return;
+  const Store& store = joint_.body().store();
+  for (int axis = 0; axis < 6; axis++) {
+    const double wanted = store.values(id_, *axis_rows().stiffness[static_cast<std::size_t>(axis / 3)])[axis % 3];
+    if (mode(axis) != MotorMode::spring || joint_.constraint().stiffness_applied(axis) >= 0.999 * wanted) continue;
+    const double h = std::sqrt(joint_.constraint().effective_inertia(axis) / (16 * wanted));
+    const double substeps = std::ceil(joint_.body().world().timestep() / std::max(h, 1e-9));
+    log_warning("motor '{}/{}': a spring of {} is held at {:.4g} to stay stable; about {} substeps would allow it",
+                joint_.body().name(), name(), wanted, joint_.constraint().stiffness_applied(axis), substeps);
+    return;
+  }
+}
+
+void Motor::tell() {
+  Store& store = joint_.body().store();
+  const JointConstraint& constraint = joint_.constraint();
+  const AxisRows& rows = axis_rows();
+  const Vec3 force = constraint.applied_force();
+  const Vec3 torque = constraint.applied_torque();
+  double* const told_force = store.tell(id_, *rows.applied_force);
+  double* const told_torque = store.tell(id_, *rows.applied_torque);
+  bool capped = false;
+  for (int i = 0; i < 3; i++) {
+    told_force[i] = force[i];
+    told_torque[i] = torque[i];
+  }
+  for (int axis = 0; axis < 6; axis++) {
+    const auto half = static_cast<std::size_t>(axis / 3);
+    const double stiffness = constraint.stiffness_applied(axis);
+    store.tell(id_, *rows.stiffness_applied[half])[axis % 3] = stiffness;
+    store.tell(id_, *rows.damping_applied[half])[axis % 3] = constraint.damping_applied(axis);
+    capped = capped || (constraint.axis(axis).drive == AxisDrive::spring &&
+                        stiffness < 0.999 * static_cast<double>(constraint.axis(axis).stiffness));
+  }
+  if (capped) say_cap();
+}
+
+void Motor::read_mode(double* out) const {
+  out[0] = joint_.own_axis() < 0 ? 0 : static_cast<double>(mode(joint_.own_axis()));
+}
+
+void Motor::write_mode(const double* in) { set_mode(static_cast<MotorMode>(static_cast<int>(in[0]))); }
+
+void Motor::read_target(double* out) const {
+  const int own = joint_.own_axis();
+  const auto half = static_cast<std::size_t>(own / 3);
+  const AxisRows& rows = axis_rows();
+  const Row& row = own >= 0 && mode(own) == MotorMode::spring ? *rows.rest[half] : *rows.servo_position[half];
+  out[0] = own < 0 ? 0 : joint_.body().store().values(id_, row)[own % 3];
+}
+
+void Motor::write_target(const double* in) { set_target(in[0]); }
+
+void Motor::read_speed(double* out) const {
+  const int own = joint_.own_axis();
+  out[0] = own < 0
+               ? 0
+               : joint_.body().store().values(id_, *axis_rows().velocity[static_cast<std::size_t>(own / 3)])[own % 3];
+}
+
+void Motor::write_speed(const double* in) { set_own(*axis_rows().velocity[0], *axis_rows().velocity[1], in[0]); }
+
+Result<void> Motor::refuse_own_axis(const double*) const {
+  if (joint_.own_axis() >= 0) return {};
+  return Error{"a fixed joint has no axis of its own"};
+}
+
+}  // namespace limber

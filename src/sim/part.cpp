@@ -1,0 +1,244 @@
+// Part: its rows, and the way between the link frame that users see and the frame that Bullet moves.
+#include "sim/part.h"
+
+#include <fmt/format.h>
+
+#include "sim/body.h"
+#include "sim/world.h"
+
+namespace limber {
+
+namespace {
+
+using namespace rows;
+
+// where the rows that every tick reads and writes lie in the live block
+struct LiveRows {
+  const Row* position;
+  const Row* rotation;
+  const Row* linear_velocity;
+  const Row* angular_velocity;
+};
+
+const LiveRows& live_rows() {
+  static const LiveRows found{&Part::table().at("position"), &Part::table().at("rotation"),
+                              &Part::table().at("linear_velocity"), &Part::table().at("angular_velocity")};
+  return found;
+}
+
+Vec3 vec_at(const double* v) { return {v[0], v[1], v[2]}; }
+Quat quat_at(const double* v) { return quat_xyzw(v[0], v[1], v[2], v[3]); }
+
+void put(double* to, const Vec3& v) {
+  to[0] = v.x;
+  to[1] = v.y;
+  to[2] = v.z;
+}
+
+void put(double* to, const Quat& q) {
+  to[0] = q.x;
+  to[1] = q.y;
+  to[2] = q.z;
+  to[3] = q.w;
+}
+
+}  // namespace
+
+const Table& Part::table() {
+  static const Table table(
+      "part", "/physics/body/<body>/part/<part>", "/physics/part",
+      {
+          refuse<&Part::refuse_mass>(effect<&Part::effect_mass>(number(
+              "mass", "kg", 1, 0.001, 1e6, "Mass; the inertia scales with it. A part made with mass 0 never moves."))),
+          effect<&Part::effect_damping>(
+              number("linear_damping", "1/s", 0, 0, 1, "Fraction of the velocity lost per second.")),
+          effect<&Part::effect_damping>(
+              number("angular_damping", "1/s", 0, 0, 1, "Fraction of the angular velocity lost per second.")),
+          effect<&Part::effect_surface>(
+              number("friction", "", 0.5, 0, 100, "Coulomb friction; the values of two touching parts multiply.")),
+          effect<&Part::effect_surface>(number("rolling_friction", "m", 0, 0, 100,
+                                               "Resistance to rolling; the values of two touching parts are mixed.")),
+          effect<&Part::effect_surface>(number("restitution", "", 0, 0, 1,
+                                               "What a bounce gives back; the values of two touching parts multiply.")),
+          effect<&Part::effect_reports>(
+              boolean("report_contacts", false, "Tell when this part begins to touch another.")),
+          live(state(effect<&Part::effect_pose>(
+              vec3("position", "m", {0, 0, 0}, -1e6, 1e6, "Origin of the link frame, world.")))),
+          live(state(effect<&Part::effect_pose>(quat("rotation", "Link frame, world: x y z w.")))),
+          live(state(effect<&Part::effect_velocity>(
+              vec3("linear_velocity", "m/s", {0, 0, 0}, -1e4, 1e4, "Velocity of the centre of mass, world.")))),
+          live(state(effect<&Part::effect_velocity>(
+              vec3("angular_velocity", "rad/s", {0, 0, 0}, -1e4, 1e4, "Angular velocity, world axes.")))),
+          view<&Part::read_center>(readout(vec3("center", "m", {0, 0, 0}, -1e6, 1e6, "Centre of mass, world."))),
+          act<&Part::act_force>(
+              action("apply_force", 3, 6, "Force in N for one tick, world; at a world point, else the centre.")),
+          act<&Part::act_impulse>(
+              action("apply_impulse", 3, 6, "Impulse in N·s, world; at a world point, else the centre.")),
+          act<&Part::act_torque>(action("apply_torque", 3, 3, "Torque in N·m for one tick, world axes.")),
+      });
+  return table;
+}
+
+Part::Part(Body& body, NodeId group, std::string name, std::shared_ptr<const Geometry> geometry, double mass,
+           const Pose& pose)
+    : body_(body),
+      id_(body.store().add(table(), group, std::move(name), this)),
+      geometry_(std::move(geometry)),
+      start_(pose),
+      is_static_(mass <= 0) {
+  body_.store().tell(id_, table().at("mass"))[0] = is_static_ ? 0 : mass;
+  const btVector3 inertia = is_static_ ? btVector3(0, 0, 0) : to_bt(geometry_->unit_inertia * mass);
+  btRigidBody::btRigidBodyConstructionInfo info(is_static_ ? btScalar(0) : static_cast<btScalar>(mass), nullptr,
+                                                geometry_->shape.get(), inertia);
+  info.m_startWorldTransform = to_bt(pose * geometry_->frame);
+  rigid_ = std::make_unique<btRigidBody>(info);
+  rigid_->setUserPointer(this);
+  rigid_->setActivationState(DISABLE_DEACTIVATION);
+  set_pose(pose);
+  body_.world().bullet().addRigidBody(rigid_.get());
+}
+
+Part::~Part() {
+  World& world = body_.world();
+  if (reports_contacts()) world.contact_log().part_reports(false);
+  world.contact_log().forget(*this);
+  world.bullet().removeRigidBody(rigid_.get());
+  body_.store().remove(id_);
+}
+
+const std::string& Part::name() const { return body_.store().name(id_); }
+
+Pose Part::pose() const {
+  const Store& store = body_.store();
+  return {vec_at(store.values(id_, *live_rows().position)), quat_at(store.values(id_, *live_rows().rotation))};
+}
+
+Vec3 Part::center() const { return pose() * geometry_->frame.position; }
+
+Vec3 Part::linear_velocity() const { return vec_at(body_.store().values(id_, *live_rows().linear_velocity)); }
+Vec3 Part::angular_velocity() const { return vec_at(body_.store().values(id_, *live_rows().angular_velocity)); }
+
+void Part::set_pose(const Pose& pose) {
+  Store& store = body_.store();
+  put(store.tell(id_, *live_rows().position), pose.position);
+  put(store.tell(id_, *live_rows().rotation), pose.rotation);
+  store.mark(id_, *live_rows().position);
+}
+
+void Part::set_velocity(const Vec3& linear, const Vec3& angular) {
+  Store& store = body_.store();
+  put(store.tell(id_, *live_rows().linear_velocity), linear);
+  put(store.tell(id_, *live_rows().angular_velocity), angular);
+  store.mark(id_, *live_rows().linear_velocity);
+}
+
+void Part::apply_force_at(const Vec3& force, const Vec3& at) {
+  force_ += force;
+  torque_ += glm::cross(at - center(), force);
+}
+
+void Part::apply_impulse_at(const Vec3& impulse, const Vec3& at) {
+  impulse_ += impulse;
+  angular_impulse_ += glm::cross(at - center(), impulse);
+}
+
+void Part::clear_forces() { force_ = torque_ = impulse_ = angular_impulse_ = Vec3(0); }
+
+void Part::push_forces() {
+  if (is_static_) return clear_forces();
+  rigid_->applyCentralForce(to_bt(force_));
+  rigid_->applyTorque(to_bt(torque_));
+  rigid_->applyCentralImpulse(to_bt(impulse_));
+  rigid_->applyTorqueImpulse(to_bt(angular_impulse_));
+  clear_forces();
+}
+
+void Part::tell() {
+  Store& store = body_.store();
+  const btTransform& t = rigid_->getWorldTransform();
+  const Pose pose = from_bt(t) * geometry_->frame.inverse();
+  put(store.tell(id_, *live_rows().position), pose.position);
+  put(store.tell(id_, *live_rows().rotation), pose.rotation);
+  put(store.tell(id_, *live_rows().linear_velocity), from_bt(rigid_->getLinearVelocity()));
+  put(store.tell(id_, *live_rows().angular_velocity), from_bt(rigid_->getAngularVelocity()));
+}
+
+bool Part::reports_contacts() const { return reports_; }
+
+void Part::effect_mass() {
+  if (is_static_) return;
+  const double mass = body_.store().values(id_, table().at("mass"))[0];
+  rigid_->setMassProps(static_cast<btScalar>(mass), to_bt(geometry_->unit_inertia * mass));
+  rigid_->updateInertiaTensor();
+  // Bullet keeps gravity as a force, which was made with the old mass
+  rigid_->setGravity(body_.world().bullet().getGravity());
+}
+
+void Part::effect_damping() {
+  const Store& store = body_.store();
+  rigid_->setDamping(static_cast<btScalar>(store.values(id_, table().at("linear_damping"))[0]),
+                     static_cast<btScalar>(store.values(id_, table().at("angular_damping"))[0]));
+}
+
+void Part::effect_surface() {
+  const Store& store = body_.store();
+  rigid_->setFriction(static_cast<btScalar>(store.values(id_, table().at("friction"))[0]));
+  rigid_->setRollingFriction(static_cast<btScalar>(store.values(id_, table().at("rolling_friction"))[0]));
+  rigid_->setRestitution(static_cast<btScalar>(store.values(id_, table().at("restitution"))[0]));
+}
+
+void Part::effect_pose() {
+  const btTransform t = to_bt(pose() * geometry_->frame);
+  rigid_->setWorldTransform(t);
+  rigid_->setInterpolationWorldTransform(t);
+  rigid_->updateInertiaTensor();
+  body_.note_moved();
+}
+
+void Part::effect_velocity() {
+  if (is_static_) return;
+  rigid_->setLinearVelocity(to_bt(linear_velocity()));
+  rigid_->setAngularVelocity(to_bt(angular_velocity()));
+}
+
+void Part::effect_reports() {
+  const bool wanted = body_.store().values(id_, table().at("report_contacts"))[0] != 0;
+  if (wanted != reports_) body_.world().contact_log().part_reports(wanted);
+  reports_ = wanted;
+}
+
+void Part::read_center(double* out) const { put(out, center()); }
+
+Result<void> Part::refuse_mass(const double*) const {
+  if (!is_static_) return {};
+  return Error{"it was made with mass 0 and never moves; make it with a mass instead"};
+}
+
+Result<void> Part::act_force(std::span<const double> a) {
+  if (a.size() == 3) {
+    apply_force(vec_at(a.data()));
+  } else if (a.size() == 6) {
+    apply_force_at(vec_at(a.data()), vec_at(a.data() + 3));
+  } else {
+    return Error{fmt::format("takes 3 numbers, or 6 with a point, not {}", a.size())};
+  }
+  return {};
+}
+
+Result<void> Part::act_impulse(std::span<const double> a) {
+  if (a.size() == 3) {
+    apply_impulse(vec_at(a.data()));
+  } else if (a.size() == 6) {
+    apply_impulse_at(vec_at(a.data()), vec_at(a.data() + 3));
+  } else {
+    return Error{fmt::format("takes 3 numbers, or 6 with a point, not {}", a.size())};
+  }
+  return {};
+}
+
+Result<void> Part::act_torque(std::span<const double> a) {
+  apply_torque(vec_at(a.data()));
+  return {};
+}
+
+}  // namespace limber

@@ -1,0 +1,92 @@
+// Shapes: what they need to be possible, compounds, their geometry.
+#include "sim/shape.h"
+
+#include <fmt/format.h>
+
+#include "sim/geometry.h"
+
+namespace limber {
+
+const Table& Shape::table() {
+  // materials come with the picture; until then a shape is a name that parts are made of
+  static const Table table("shape", "/visuals/shape/<shape>", "", {});
+  return table;
+}
+
+namespace {
+
+constexpr double kSmallest = 1e-4;
+constexpr double kLargest = 1e4;
+
+Result<void> check_length(double value, std::string_view shape, std::string_view what) {
+  if (value >= kSmallest && value <= kLargest) return {};
+  return Error{fmt::format("a {} needs a {} of {} .. {} m, not {}", shape, what, kSmallest, kLargest, value)};
+}
+
+Result<void> both(Result<void> a, Result<void> b) { return a ? b : a; }
+
+}  // namespace
+
+Result<void> check_shape(const ShapeModel& m) {
+  switch (m.kind) {
+    case ShapeKind::plane:
+      if (!is_finite(m.normal) || glm::length(m.normal) < 1e-9) return Error{"a plane needs a normal that is not zero"};
+      return {};
+    case ShapeKind::sphere:
+      return check_length(m.radius, "sphere", "radius");
+    case ShapeKind::box:
+      for (int i = 0; i < 3; i++) {
+        if (const Result<void> ok = check_length(m.size[i], "box", "size"); !ok) return ok;
+      }
+      return {};
+    case ShapeKind::cylinder:
+      return both(check_length(m.radius, "cylinder", "radius"), check_length(m.height, "cylinder", "height"));
+    case ShapeKind::capsule:
+      return both(check_length(m.radius, "capsule", "radius"), check_length(m.height, "capsule", "height"));
+    case ShapeKind::cone:
+      return both(check_length(m.radius, "cone", "radius"), check_length(m.height, "cone", "height"));
+    case ShapeKind::mesh:
+      if (m.mesh == nullptr || m.mesh->hull.size() < 4) return Error{"a convex mesh needs at least 4 points"};
+      return {};
+    case ShapeKind::compound:
+      return {};
+  }
+  return {};
+}
+
+Shape::Shape(Store& store, NodeId group, std::string name, ShapeModel model)
+    : store_(store), id_(store.add(table(), group, std::move(name), this)), model_(std::move(model)) {
+  if (model_.kind == ShapeKind::plane) model_.normal = normalized(model_.normal);
+}
+
+Shape::~Shape() { store_.remove(id_); }
+
+Result<void> Shape::add_child(const Shape& child, const Pose& origin) {
+  if (model_.kind != ShapeKind::compound) {
+    return Error{fmt::format("shape '{}' is no compound; make one with sim:add_compound_shape", name())};
+  }
+  if (&child == this) return Error{fmt::format("compound '{}' can't hold itself", name())};
+  if (child.model().kind == ShapeKind::plane) return Error{fmt::format("compound '{}' can't hold a plane", name())};
+  if (children_.size() + child.placed().size() > 1000)
+    return Error{fmt::format("compound '{}' may hold 1000 shapes", name())};
+  for (PlacedShape placed : child.placed()) {
+    placed.origin = origin * placed.origin;
+    children_.push_back(placed);
+  }
+  geometry_ = nullptr;
+  return {};
+}
+
+std::vector<PlacedShape> Shape::placed() const {
+  if (model_.kind == ShapeKind::compound) return children_;
+  PlacedShape self;
+  self.shape = model_;
+  return {self};
+}
+
+std::shared_ptr<const Geometry> Shape::geometry() const {
+  if (geometry_ == nullptr) geometry_ = make_geometry(placed(), Inertial{});
+  return geometry_;
+}
+
+}  // namespace limber

@@ -1,0 +1,259 @@
+// World: its rows, its bodies and shapes, the physical half of a tick.
+#include "sim/world.h"
+
+#include <algorithm>
+#include <chrono>
+
+#include <fmt/format.h>
+
+#include "base/log.h"
+#include "base/random.h"
+#include "base/text.h"
+
+namespace limber {
+
+namespace {
+
+using namespace rows;
+
+// what a healthy part stays below (architecture.md, the tick, 7)
+constexpr double kMaxSpeed = 500;
+constexpr double kMaxSpin = 1000;
+constexpr double kMaxDistance = 1e4;
+
+double seconds_now() {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
+}
+
+struct WorldRows {
+  const Row *gravity, *timestep, *substeps, *iterations, *seed, *time, *tick;
+};
+
+const WorldRows& world_rows() {
+  static const auto at = [](const char* name) { return &World::table().at(name); };
+  static const WorldRows found{at("gravity"), at("timestep"), at("substeps"), at("solver_iterations"),
+                               at("seed"),    at("time"),     at("tick")};
+  return found;
+}
+
+}  // namespace
+
+const Table& World::table() {
+  static const Table table(
+      "sim", "/physics/sim", "/physics/sim",
+      {
+          effect<&World::effect_gravity>(
+              vec3("gravity", "m/s²", {0, 0, -9.81}, -1e4, 1e4, "Acceleration of everything that moves.")),
+          number("timestep", "s", 1.0 / 60, 1e-5, 1, "What a tick advances the time by."),
+          integer("substeps", 4, 1, 1000, "Equal internal steps that a tick is made of."),
+          effect<&World::effect_solver>(integer("solver_iterations", 50, 1, 10000,
+                                                "Rounds of the contact and joint solver in each internal step.")),
+          choice("solver", {"iterative"}, 0, "How joints and contacts are solved."),
+          live(state(integer("seed", 1, 0, 9007199254740992,
+                             "What every random draw derives from; counts from the next start."))),
+          live(state(boolean("paused", false, "Time stands still; commands and OSC are still answered."))),
+          live(state(number("speed", "× real time", 1, 0.01, 100, "How fast simulated time runs when it is paced."))),
+          live(readout(number("time", "s", 0, 0, kUnbounded, "Simulated time."))),
+          live(readout(integer("tick", 0, 0, kUnbounded, "Ticks since the start."))),
+          act<&World::act_reset>(action("reset", 0, 0, "The scene from its start, with the performer's values.")),
+      });
+  return table;
+}
+
+World::World(Store& store) : store_(store), bullet_(std::make_unique<IslandWorld>()) {
+  const NodeId physics = store_.add_group(store_.root(), "physics");
+  id_ = store_.add(table(), physics, "sim", this);
+  body_group_ = store_.add_group(physics, "body");
+  const NodeId visuals = store_.add_group(store_.root(), "visuals");
+  shape_group_ = store_.add_group(visuals, "shape");
+  bullet_->setInternalTickCallback(&World::after_internal_step, this, false);
+}
+
+World::~World() { clear(); }
+
+void World::clear() {
+  bodies_.clear();
+  shapes_.clear();
+  geometries_.clear();
+}
+
+Result<void> World::name_is_free(NodeId group, std::string_view kind, std::string_view name) const {
+  if (const auto fault = name_fault(name)) return Error{fmt::format("{}: {}", kind, *fault)};
+  if (store_.child(group, name).null()) return {};
+  return Error{fmt::format("there is a {} '{}' already; names are unique", kind, name)};
+}
+
+Result<Body*> World::add_body(std::string name) {
+  if (const Result<void> free = name_is_free(body_group_, "body", name); !free) return Error{free.error()};
+  bodies_.push_back(std::make_unique<Body>(*this, body_group_, std::move(name)));
+  return bodies_.back().get();
+}
+
+Result<Body*> World::add_body(const std::shared_ptr<const BodyModel>& model, std::string name,
+                              const BuildOptions& options) {
+  const Result<Body*> body = add_body(std::move(name));
+  if (body) (*body)->build(model, options);
+  return body;
+}
+
+Result<Body*> World::copy_body(const Body& source, std::string name) {
+  const Result<Body*> body = add_body(std::move(name));
+  if (body) (*body)->build_copy(source);
+  return body;
+}
+
+void World::remove_body(Body& body) {
+  std::erase_if(bodies_, [&](const std::unique_ptr<Body>& b) { return b.get() == &body; });
+}
+
+Body* World::find_body(std::string_view name) const {
+  const NodeId id = store_.child(body_group_, name);
+  return id.null() ? nullptr : static_cast<Body*>(store_.thing(id));
+}
+
+std::vector<std::string_view> World::body_names() const {
+  std::vector<std::string_view> names;
+  for (const auto& body : bodies_) names.push_back(body->name());
+  return names;
+}
+
+Result<Shape*> World::add_shape(std::string name, ShapeModel model) {
+  if (const Result<void> free = name_is_free(shape_group_, "shape", name); !free) return Error{free.error()};
+  if (const Result<void> possible = check_shape(model); !possible) {
+    return Error{fmt::format("shape '{}': {}", name, possible.error())};
+  }
+  shapes_.push_back(std::make_unique<Shape>(store_, shape_group_, std::move(name), std::move(model)));
+  return shapes_.back().get();
+}
+
+Shape* World::find_shape(std::string_view name) const {
+  const NodeId id = store_.child(shape_group_, name);
+  return id.null() ? nullptr : static_cast<Shape*>(store_.thing(id));
+}
+
+const std::vector<std::shared_ptr<const Geometry>>& World::geometries_of(
+    const std::shared_ptr<const BodyModel>& model) {
+  ModelGeometry& known = geometries_[model.get()];
+  if (known.model == nullptr) {
+    known.model = model;
+    for (const LinkModel& link : model->links) known.links.push_back(make_geometry(link.collisions, link.inertial));
+  }
+  return known.links;
+}
+
+double World::time() const { return store_.values(id_, *world_rows().time)[0]; }
+double World::timestep() const { return store_.values(id_, *world_rows().timestep)[0]; }
+std::uint64_t World::seed() const { return static_cast<std::uint64_t>(store_.values(id_, *world_rows().seed)[0]); }
+
+void World::effect_gravity() {
+  const double* g = store_.values(id_, *world_rows().gravity);
+  bullet_->setGravity(to_bt(Vec3(g[0], g[1], g[2])));
+}
+
+void World::effect_solver() {
+  bullet_->getSolverInfo().m_numIterations = static_cast<int>(store_.values(id_, *world_rows().iterations)[0]);
+}
+
+Result<void> World::act_reset(std::span<const double>) {
+  reset_asked_ = true;
+  return {};
+}
+
+void World::settle() {
+  store_.apply_marks();
+  for (const auto& body : bodies_) body->settle_joints();
+}
+
+void World::step() {
+  const double start = seconds_now();
+  settle();
+  for (const auto& body : bodies_) {
+    if (std::exchange(body->fresh_, false)) body->take_start_pose();
+    if (body->in_world()) body->push_forces();
+  }
+  contacts_.begin_tick();
+  const double before = seconds_now();
+  const int substeps = static_cast<int>(store_.values(id_, *world_rows().substeps)[0]);
+  bullet_->step(timestep() / substeps, substeps);
+  const double after = seconds_now();
+  contacts_.end_tick();
+  tick_++;
+  store_.tell(id_, *world_rows().time)[0] += timestep();
+  store_.tell(id_, *world_rows().tick)[0] = static_cast<double>(tick_);
+  for (const auto& body : bodies_) {
+    if (body->in_world()) body->tell();
+  }
+  check_health();
+  times_ = {before - start, after - before, seconds_now() - after};
+}
+
+void World::after_internal_step(btDynamicsWorld* bullet, btScalar) {
+  World& world = *static_cast<World*>(bullet->getWorldUserInfo());
+  world.contacts_.gather(*bullet->getDispatcher());
+  // what is no number must not reach the next internal step, where it would spread
+  for (const auto& body : world.bodies_) {
+    if (!body->in_world()) continue;
+    for (const auto& part : body->parts()) {
+      const btRigidBody& rigid = part->rigid();
+      if (rigid.isStaticObject()) continue;
+      const double speed = rigid.getLinearVelocity().length2();
+      const double spin = rigid.getAngularVelocity().length2();
+      const double distance = rigid.getWorldTransform().getOrigin().length2();
+      if (speed < kMaxSpeed * kMaxSpeed && spin < kMaxSpin * kMaxSpin && distance < kMaxDistance * kMaxDistance)
+        continue;
+      const bool number = std::isfinite(speed) && std::isfinite(spin) && std::isfinite(distance);
+      world.heal(*body, *part,
+                 !number                          ? "is no number any more"
+                 : speed >= kMaxSpeed * kMaxSpeed ? "is faster than 500 m/s"
+                 : spin >= kMaxSpin * kMaxSpin    ? "turns faster than 1000 rad/s"
+                                                  : "is beyond 10 km");
+      break;
+    }
+  }
+}
+
+void World::heal(Body& body, const Part& part, const char* what) {
+  health_events_++;
+  for (std::size_t i = 0; i < body.parts_.size(); i++) {
+    Part& each = *body.parts_[i];
+    each.set_pose(i < body.last_good_.size() ? body.last_good_[i] : each.start_pose());
+    each.set_velocity(Vec3(0), Vec3(0));
+  }
+  const bool again = std::exchange(body.restored_once_, true);
+  if (again) {
+    body.set_enabled(false);
+    log_warning("body '{}': part '{}' {} again; the body is switched off (reset or enabled = true brings it back)",
+                body.name(), part.name(), what);
+  } else {
+    log_warning("body '{}': part '{}' {}; the body is put back to its last good pose, at rest", body.name(),
+                part.name(), what);
+  }
+  body.broken_ = true;
+  for (const auto& each : body.parts_) {
+    each->effect_pose();
+    each->effect_velocity();
+    each->rigid().forceActivationState(DISABLE_DEACTIVATION);
+  }
+}
+
+void World::check_health() {
+  store_.apply_marks();
+  for (const auto& body : bodies_) {
+    body->settle_joints();
+    if (!body->in_world() || std::exchange(body->broken_, false)) continue;
+    body->last_good_.resize(body->parts_.size());
+    for (std::size_t i = 0; i < body->parts_.size(); i++) body->last_good_[i] = body->parts_[i]->pose();
+  }
+}
+
+std::uint64_t World::state_hash() const {
+  std::uint64_t hash = hash_bytes("limber");
+  const auto* kept = reinterpret_cast<const char*>(std::as_const(store_).kept_block(id_));
+  hash = hash_bytes({kept, table().kept_width() * sizeof(double)}, hash);
+  const double moment[] = {time(), static_cast<double>(tick_), static_cast<double>(seed())};
+  hash = hash_bytes({reinterpret_cast<const char*>(moment), sizeof moment}, hash);
+  for (const auto& body : bodies_) hash = body->state_hash(hash);
+  return hash;
+}
+
+}  // namespace limber
