@@ -62,8 +62,8 @@ class JointConstraint : public btTypedConstraint {
   /// Passive damping of every axis that is not locked, in any mode: N·s/m and N·m·s/rad, >= 0, any value is stable.
   void set_damping(double damping) { damping_ = to_scalar(damping); }
 
-  /// Call after a part was moved by hand: reads the pose anew, chooses the turns nearest to `near` (rad, own order)
-  /// and forgets what servos learnt and motors applied.
+  /// Call after a part was moved by hand: reads the pose anew, with the turns nearest to `near` (rad, own order; 0:
+  /// outer and inner angle within ±pi, middle within ±pi/2), and forgets what servos learnt and motors applied.
   void reset(const Vec3& near = Vec3(0));
   /// Reads angles, offsets and rates from the parts' present poses; IslandWorld::step ends with this for every joint.
   void refresh();
@@ -133,8 +133,8 @@ class JointConstraint : public btTypedConstraint {
   };
 
   void choose_order();
-  void read_pose();
-  void read_angles(const btMatrix3x3& r, const btVector3* axes_b);
+  void read_pose(bool principal = false);
+  void read_angles(const btVector3* axes_b, bool principal);
   void read_rates();
   double unwrapped(int axis, double raw) const;
   Jacobian jacobian(int axis) const;

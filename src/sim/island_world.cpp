@@ -1,0 +1,182 @@
+// Islands: found by Bullet, sorted here by counting, solved batch by batch.
+#include "sim/island_world.h"
+
+#include <algorithm>
+
+#include <BulletCollision/BroadphaseCollision/btDbvtBroadphase.h>
+
+namespace limber {
+namespace {
+
+/// Islands are solved together until this many joints and contact pairs are in a batch; it changes no result.
+constexpr int kBatch = 16;
+
+int island_tag(const btCollisionObject& a, const btCollisionObject& b) {
+  return a.getIslandTag() >= 0 ? a.getIslandTag() : b.getIslandTag();
+}
+
+// Counts per island in start[1..] become starts, and cursor their copy.
+void accumulate(btAlignedObjectArray<int>& start, btAlignedObjectArray<int>& cursor) {
+  for (int i = 1; i < start.size(); ++i) start[i] += start[i - 1];
+  cursor.copyFromArray(start);
+}
+
+void zero(btAlignedObjectArray<int>& a, int size) {
+  a.resizeNoInitialize(size);
+  for (int i = 0; i < size; ++i) a[i] = 0;
+}
+
+}  // namespace
+
+WorldParts::WorldParts(const WorldSetup& setup) {
+  gDbvtMargin = to_scalar(setup.broadphase_margin);
+  btDefaultCollisionConstructionInfo info;
+  info.m_defaultMaxPersistentManifoldPoolSize = setup.manifold_pool;
+  info.m_defaultMaxCollisionAlgorithmPoolSize = setup.manifold_pool;
+  configuration = std::make_unique<btDefaultCollisionConfiguration>(info);
+  dispatcher = std::make_unique<btCollisionDispatcher>(configuration.get());
+  broadphase = std::make_unique<btDbvtBroadphase>();
+  // every pair is looked at in every step, so that a pair's life does not depend on how many others there are
+  broadphase->m_cupdates = 100;
+  solver = std::make_unique<IslandSolver>();
+}
+
+IslandWorld::IslandWorld(const WorldSetup& setup)
+    : WorldParts(setup),
+      btDiscreteDynamicsWorld(dispatcher.get(), broadphase.get(), solver.get(), configuration.get()) {
+  btContactSolverInfo& info = getSolverInfo();
+  info.m_numIterations = setup.solver_iterations;
+  info.m_solverMode = SOLVER_USE_WARMSTARTING | SOLVER_SIMD | SOLVER_USE_2_FRICTION_DIRECTIONS;
+  info.m_splitImpulse = 1;
+  info.m_splitImpulsePenetrationThreshold = 0;
+  info.m_minimumSolverBatchSize = kBatch;
+}
+
+IslandWorld::~IslandWorld() = default;
+
+void IslandWorld::step(double h, int substeps) {
+  if (!(h > 0) || substeps <= 0) return;
+  const btScalar step_length = to_scalar(h);
+  saveKinematicState(step_length * static_cast<btScalar>(substeps));
+  applyGravity();
+  for (int i = 0; i < substeps; ++i) internalSingleStepSimulation(step_length);
+  clearForces();
+  for (int i = 0; i < m_constraints.size(); ++i) {
+    if (m_constraints[i]->getConstraintType() == JointConstraint::kType) {
+      static_cast<JointConstraint*>(m_constraints[i])->end_tick();
+    }
+  }
+}
+
+void IslandWorld::addConstraint(btTypedConstraint* constraint, bool disable_collisions) {
+  btDiscreteDynamicsWorld::addConstraint(constraint, disable_collisions);
+  btBroadphaseProxy* a = constraint->getRigidBodyA().getBroadphaseHandle();
+  btBroadphaseProxy* b = constraint->getRigidBodyB().getBroadphaseHandle();
+  if (!disable_collisions || !a || !b) return;
+  // contacts that the two have already would be solved for ever
+  btOverlappingPairCache* pairs = getPairCache();
+  if (btBroadphasePair* pair = pairs->findPair(a, b)) pairs->cleanOverlappingPair(*pair, getDispatcher());
+}
+
+void IslandWorld::removeConstraint(btTypedConstraint* constraint) {
+  const int count = m_constraints.size();
+  const int index = m_constraints.findLinearSearch(constraint);
+  if (index == count) return;
+  for (int i = index; i + 1 < count; ++i) m_constraints[i] = m_constraints[i + 1];
+  m_constraints.pop_back();
+  constraint->getRigidBodyA().removeConstraintRef(constraint);
+  constraint->getRigidBodyB().removeConstraintRef(constraint);
+}
+
+void IslandWorld::solveConstraints(btContactSolverInfo& info) {
+  sort_bodies();
+  sort_joints();
+  sort_contacts();
+  solve_islands(info);
+}
+
+void IslandWorld::sort_bodies() {
+  // islands get numbers in the order of their first body
+  const int count = m_nonStaticRigidBodies.size();
+  island_of_tag_.resizeNoInitialize(getNumCollisionObjects());
+  for (int i = 0; i < count; ++i) {
+    const int tag = m_nonStaticRigidBodies[i]->getIslandTag();
+    if (tag >= 0) island_of_tag_[tag] = -1;
+  }
+  island_count_ = 0;
+  zero(body_start_, count + 1);
+  for (int i = 0; i < count; ++i) {
+    const int tag = m_nonStaticRigidBodies[i]->getIslandTag();
+    if (tag < 0) continue;  // kinematic
+    if (island_of_tag_[tag] < 0) island_of_tag_[tag] = island_count_++;
+    ++body_start_[island_of_tag_[tag] + 1];
+  }
+  body_start_.resizeNoInitialize(island_count_ + 1);
+  accumulate(body_start_, cursor_);
+  bodies_.resizeNoInitialize(count);
+  for (int i = 0; i < count; ++i) {
+    btRigidBody* body = m_nonStaticRigidBodies[i];
+    if (body->getIslandTag() >= 0) bodies_[cursor_[island_of_tag_[body->getIslandTag()]]++] = body;
+  }
+}
+
+void IslandWorld::sort_joints() {
+  const int count = m_constraints.size();
+  zero(joint_start_, island_count_ + 1);
+  for (int i = 0; i < count; ++i) {
+    const int tag = island_tag(m_constraints[i]->getRigidBodyA(), m_constraints[i]->getRigidBodyB());
+    if (tag >= 0) ++joint_start_[island_of_tag_[tag] + 1];
+  }
+  accumulate(joint_start_, cursor_);
+  joints_.resizeNoInitialize(count);
+  for (int i = 0; i < count; ++i) {
+    const int tag = island_tag(m_constraints[i]->getRigidBodyA(), m_constraints[i]->getRigidBodyB());
+    if (tag >= 0) joints_[cursor_[island_of_tag_[tag]]++] = m_constraints[i];
+  }
+}
+
+void IslandWorld::sort_contacts() {
+  btDispatcher* dispatch = getDispatcher();
+  touches_.resizeNoInitialize(0);
+  for (int i = 0; i < dispatch->getNumManifolds(); ++i) {
+    btPersistentManifold* manifold = dispatch->getManifoldByIndexInternal(i);
+    if (manifold->getNumContacts() == 0) continue;
+    const btCollisionObject* a = manifold->getBody0();
+    const btCollisionObject* b = manifold->getBody1();
+    const int tag = island_tag(*a, *b);
+    if (tag < 0 || !dispatch->needsResponse(a, b)) continue;
+    touches_.push_back(
+        {island_of_tag_[tag], a->getBroadphaseHandle()->m_uniqueId, b->getBroadphaseHandle()->m_uniqueId, manifold});
+  }
+  // Bullet keeps manifolds in an order that depends on all islands' history; the parts' age does not
+  const int count = touches_.size();
+  if (count > 1) {
+    std::sort(&touches_[0], &touches_[0] + count, [](const Touch& x, const Touch& y) {
+      if (x.island != y.island) return x.island < y.island;
+      return x.first != y.first ? x.first < y.first : x.second < y.second;
+    });
+  }
+  zero(contact_start_, island_count_ + 1);
+  contacts_.resizeNoInitialize(count);
+  for (int i = 0; i < count; ++i) {
+    contacts_[i] = touches_[i].manifold;
+    ++contact_start_[touches_[i].island + 1];
+  }
+  accumulate(contact_start_, cursor_);
+}
+
+void IslandWorld::solve_islands(const btContactSolverInfo& info) {
+  const auto range = [](auto& items, int first) { return first < items.size() ? &items[first] : nullptr; };
+  int first = 0;
+  for (int last = 1; last <= island_count_; ++last) {
+    const int joints = joint_start_[last] - joint_start_[first];
+    const int contacts = contact_start_[last] - contact_start_[first];
+    if (joints + contacts < info.m_minimumSolverBatchSize && last < island_count_) continue;
+    m_constraintSolver->solveGroup(range(bodies_, body_start_[first]), body_start_[last] - body_start_[first],
+                                   range(contacts_, contact_start_[first]), contacts,
+                                   range(joints_, joint_start_[first]), joints, info, nullptr, getDispatcher());
+    first = last;
+  }
+}
+
+}  // namespace limber

@@ -1,0 +1,245 @@
+// The joint's geometry: frames, order of angles, unwrapped angles, rates, and the inertia an axis works on.
+#include "sim/joint_constraint.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace limber {
+namespace {
+
+constexpr double kTurn = 2 * kPi;
+/// Least squared cosine of the middle angle: nearer to the singular pose than 5.7 degrees, rates are understated.
+constexpr btScalar kLeastCosine2 = btScalar(0.01);
+
+// -1 when outer, middle, inner is an odd permutation of x, y, z.
+btScalar parity(int outer, int middle) { return btScalar((outer + 1) % 3 == middle ? 1 : -1); }
+
+std::size_t at(int i) { return static_cast<std::size_t>(i); }
+
+// How far from 0 an axis may get: the middle angle should be the one with the least reach.
+double reach(const AxisSettings& s) {
+  if (s.free()) return kTurn * 1e3;
+  return std::max(std::fabs(static_cast<double>(s.lower)), std::fabs(static_cast<double>(s.upper)));
+}
+
+}  // namespace
+
+JointConstraint::JointConstraint(btRigidBody& parent, btRigidBody& child, const btTransform& frame_in_parent,
+                                 const btTransform& frame_in_child)
+    : btTypedConstraint(kType, parent, child), frame_a_(frame_in_parent), frame_b_(frame_in_child) {
+  reset();
+}
+
+void JointConstraint::set_axis(int axis, const AxisSettings& settings) {
+  AxisSettings& mine = axes_[at(axis)];
+  const bool new_range = mine.lower != settings.lower || mine.upper != settings.upper;
+  mine = settings;
+  if (!new_range) return;
+  const int middle = middle_;
+  choose_order();
+  read_pose(middle != middle_);
+
+  // an axis that was free may have made many turns: don't unwind them to get into the range
+  if (axis < 3 || !mine.limited()) return;
+  double& angle = angle_[at(axis - 3)];
+  if (angle >= static_cast<double>(mine.lower) && angle <= static_cast<double>(mine.upper)) return;
+  const double center = 0.5 * (static_cast<double>(mine.lower) + static_cast<double>(mine.upper));
+  angle -= kTurn * std::round((angle - center) / kTurn);
+}
+
+void JointConstraint::set_frames(const btTransform& frame_in_parent, const btTransform& frame_in_child) {
+  frame_a_ = frame_in_parent;
+  frame_b_ = frame_in_child;
+  read_pose();
+}
+
+void JointConstraint::reset(const Vec3& near) {
+  angle_ = {near.x, near.y, near.z};
+  motor_impulse_.fill(0);
+  tick_impulse_.fill(0);
+  applied_.fill(0);
+  learnt_inertia_.fill(0);
+  pair_inertia_.fill(0);
+  tick_time_ = 0;
+  read_pose(near == Vec3(0));
+  previous_rate_ = rate_;
+}
+
+void JointConstraint::refresh() { read_pose(); }
+
+void JointConstraint::end_tick() {
+  const float per_time = tick_time_ > 0 ? 1.0f / tick_time_ : 0.0f;
+  for (std::size_t i = 0; i < 6; ++i) applied_[i] = tick_impulse_[i] * per_time;
+  tick_impulse_.fill(0);
+  tick_time_ = 0;
+  read_pose();
+}
+
+void JointConstraint::choose_order() {
+  // least reach wins; ties: y before x before z
+  middle_ = 1;
+  if (reach(axes_[3]) < reach(axes_[at(3 + middle_)])) middle_ = 0;
+  if (reach(axes_[5]) < reach(axes_[at(3 + middle_)])) middle_ = 2;
+  outer_ = middle_ == 2 ? 1 : 2;
+  inner_ = 3 - middle_ - outer_;
+}
+
+void JointConstraint::read_pose(bool principal) {
+  const btTransform& part_a = m_rbA.getCenterOfMassTransform();
+  const btTransform& part_b = m_rbB.getCenterOfMassTransform();
+  const btMatrix3x3 basis_a = part_a.getBasis() * frame_a_.getBasis();
+  const btMatrix3x3 basis_b = part_b.getBasis() * frame_b_.getBasis();
+  arm_b_ = part_b.getBasis() * frame_b_.getOrigin();
+  const btVector3 pivot = part_b.getOrigin() + arm_b_;
+  arm_a_ = pivot - part_a.getOrigin();
+  const btVector3 gap = arm_a_ - part_a.getBasis() * frame_a_.getOrigin();
+  btVector3 axes_b[3];
+  for (int i = 0; i < 3; ++i) {
+    axis_a_[at(i)] = basis_a.getColumn(i);
+    axes_b[i] = basis_b.getColumn(i);
+    offset_[at(i)] = axis_a_[at(i)].dot(gap);
+  }
+  read_angles(axes_b, principal);
+  read_rates();
+}
+
+double JointConstraint::unwrapped(int axis, double raw) const {
+  return raw + kTurn * std::round((angle_[at(axis)] - raw) / kTurn);
+}
+
+// R = R_outer(a)·R_middle(b)·R_inner(c), its element ij being axis_a[i] · axis_b[j].
+void JointConstraint::read_angles(const btVector3* axes_b, bool principal) {
+  const btScalar s = parity(outer_, middle_);
+  const btVector3& a_outer = axis_a_[at(outer_)];
+  const btVector3& a_middle = axis_a_[at(middle_)];
+  const btVector3& a_inner = axis_a_[at(inner_)];
+  const btScalar sine = s * a_outer.dot(axes_b[inner_]);
+  const btScalar middle_inner = a_middle.dot(axes_b[inner_]);
+  const btScalar inner_inner = a_inner.dot(axes_b[inner_]);
+  btScalar cosine = std::sqrt(middle_inner * middle_inner + inner_inner * inner_inner);
+
+  double outer = static_cast<double>(std::atan2(-s * middle_inner, inner_inner));
+  double middle = static_cast<double>(std::atan2(sine, cosine));
+  double inner = static_cast<double>(std::atan2(-s * a_outer.dot(axes_b[middle_]), a_outer.dot(axes_b[outer_])));
+  const double outer_near = unwrapped(outer_, outer);
+  const double middle_near = principal ? middle : unwrapped(middle_, middle);
+  const double inner_near = unwrapped(inner_, inner);
+  const auto distance = [this](double o, double m, double i) {
+    return std::fabs(o - angle_[at(outer_)]) + std::fabs(m - angle_[at(middle_)]) + std::fabs(i - angle_[at(inner_)]);
+  };
+  outer = outer_near;
+  middle = middle_near;
+  inner = inner_near;
+
+  // three angles have a second reading, beyond the pole: take the one that continues the motion
+  if (!principal && !axes_[at(3 + middle_)].locked()) {
+    const double outer_far = unwrapped(outer_, outer_near + kPi);
+    const double middle_far = unwrapped(middle_, kPi - middle_near);
+    const double inner_far = unwrapped(inner_, inner_near + kPi);
+    if (distance(outer_far, middle_far, inner_far) < distance(outer_near, middle_near, inner_near)) {
+      outer = outer_far;
+      middle = middle_far;
+      inner = inner_far;
+      cosine = -cosine;
+    }
+  }
+  angle_[at(outer_)] = outer;
+  angle_[at(middle_)] = middle;
+  angle_[at(inner_)] = inner;
+
+  // the angular velocity is rate_outer·e_outer + rate_middle·e_middle + rate_inner·e_inner; these are the dual axes
+  const btVector3& e_outer = a_outer;
+  const btVector3& e_inner = axes_b[inner_];
+  const btScalar cosine2 = std::max(cosine * cosine, kLeastCosine2);
+  const btScalar along = s * sine;
+  dual_[at(outer_)] = (e_outer - along * e_inner) / cosine2;
+  dual_[at(inner_)] = (e_inner - along * e_outer) / cosine2;
+  const btScalar scale = s / std::copysign(std::sqrt(cosine2), cosine);
+  dual_[at(middle_)] = scale * e_inner.cross(e_outer);
+}
+
+void JointConstraint::read_rates() {
+  const btVector3 spin = m_rbB.getAngularVelocity() - m_rbA.getAngularVelocity();
+  const btVector3 drift = m_rbB.getLinearVelocity() + m_rbB.getAngularVelocity().cross(arm_b_) -
+                          m_rbA.getLinearVelocity() - m_rbA.getAngularVelocity().cross(arm_a_);
+  for (int i = 0; i < 3; ++i) {
+    rate_[at(i)] = axis_a_[at(i)].dot(drift);
+    rate_[at(3 + i)] = dual_[at(i)].dot(spin);
+  }
+}
+
+Vec3 JointConstraint::relrot() const {
+  const btMatrix3x3 a = m_rbA.getCenterOfMassTransform().getBasis() * frame_a_.getBasis();
+  const btMatrix3x3 r = a.transposeTimes(m_rbB.getCenterOfMassTransform().getBasis() * frame_b_.getBasis());
+  const auto element = [&r](int i, int j) { return static_cast<double>(r[i][j]); };
+  Vec3 angles(std::atan2(element(2, 1), element(2, 2)),
+              std::atan2(-element(2, 0), std::hypot(element(2, 1), element(2, 2))),
+              std::atan2(element(1, 0), element(0, 0)));
+  const AxisSettings& own = axes_[5];
+  if (own.free() || reach(own) > kPi) angles.z = unwrapped(2, angles.z);
+  return angles;
+}
+
+JointConstraint::Jacobian JointConstraint::jacobian(int axis) const {
+  if (axis >= 3) {
+    const btVector3& d = dual_[at(axis - 3)];
+    return {btVector3(0, 0, 0), -d, d};
+  }
+  const btVector3& d = axis_a_[at(axis)];
+  return {d, -arm_a_.cross(d), arm_b_.cross(d)};
+}
+
+btScalar JointConstraint::mobility(const btRigidBody& a, const btRigidBody& b, const Jacobian& i, const Jacobian& j) {
+  return i.linear.dot(j.linear) * (a.getInvMass() + b.getInvMass()) +
+         i.angular_a.dot(a.getInvInertiaTensorWorld() * j.angular_a) +
+         i.angular_b.dot(b.getInvInertiaTensorWorld() * j.angular_b);
+}
+
+double JointConstraint::effective_inertia(int axis) const {
+  // 1/m = j M^-1 j' - k' K^-1 k with K, k from the locked rows: a Cholesky factor grown row by row, j being the last
+  const Jacobian own = jacobian(axis);
+  std::array<Jacobian, 6> rows;
+  int n = 0;
+  for (int i = 0; i < 6; ++i) {
+    if (i != axis && axes_[at(i)].locked()) rows[at(n++)] = jacobian(i);
+  }
+  rows[at(n)] = own;
+  double factor[6][6] = {};
+  double rest = 0;
+  for (int i = 0; i <= n; ++i) {
+    for (int j = 0; j <= i; ++j) {
+      const double full = static_cast<double>(mobility(m_rbA, m_rbB, rows[at(i)], rows[at(j)]));
+      double sum = full;
+      for (int k = 0; k < j; ++k) sum -= factor[i][k] * factor[j][k];
+      if (j < i) {
+        factor[i][j] = factor[j][j] > 0 ? sum / factor[j][j] : 0;
+      } else {
+        rest = std::max(sum, 0.0);
+        // a row that the others already fix has no part of its own
+        factor[i][i] = rest > 1e-6 * full ? std::sqrt(rest) : 0;
+      }
+    }
+  }
+  return rest > 0 ? 1 / rest : 0;
+}
+
+double JointConstraint::stiffness_applied(int axis) const { return static_cast<double>(stiffness_applied_[at(axis)]); }
+
+double JointConstraint::damping_applied(int axis) const {
+  const AxisSettings& s = axes_[at(axis)];
+  return s.drive == AxisDrive::spring && !s.locked() ? static_cast<double>(s.spring_damping) : 0;
+}
+
+void JointConstraint::setParam(int parameter, btScalar value, int axis) {
+  if (axis < 0 || axis > 5) return;
+  if (parameter == BT_CONSTRAINT_STOP_ERP) axes_[at(axis)].stop_erp = value;
+  if (parameter == BT_CONSTRAINT_STOP_CFM) axes_[at(axis)].stop_cfm = value;
+}
+
+btScalar JointConstraint::getParam(int parameter, int axis) const {
+  if (axis < 0 || axis > 5) return 0;
+  const AxisSettings& s = axes_[at(axis)];
+  return parameter == BT_CONSTRAINT_STOP_CFM ? s.stop_cfm : s.stop_erp;
+}
+
+}  // namespace limber

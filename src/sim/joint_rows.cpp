@@ -1,0 +1,220 @@
+// The joint's solver rows: locks, limits, motors, servos, springs, damping and friction, planned anew for each
+// internal step. Every row reads rate + softness·impulse = velocity, its impulse kept within bounds.
+#include <algorithm>
+#include <cmath>
+
+#include "sim/joint_constraint.h"
+
+namespace limber {
+namespace {
+
+constexpr btScalar kInfinity = SIMD_INFINITY;
+/// A limit gets a row when it is nearer than this plus two steps' way: rad, m.
+constexpr btScalar kAngularMargin = btScalar(0.05);
+constexpr btScalar kLinearMargin = btScalar(0.005);
+/// Fastest repair of a stiff lock's or limit's error, rad/s and m/s: a joint torn apart comes back without a bang.
+constexpr btScalar kFastestRepair = btScalar(20);
+/// Part of its error that a servo makes good in one step: with a speed limit, and without one.
+constexpr btScalar kServoGain = btScalar(0.9);
+constexpr btScalar kEagerServoGain = btScalar(0.25);
+/// Part of max_force that braking counts on; the rest is left to gravity and neighbours.
+constexpr btScalar kBrakePart = btScalar(0.7);
+/// Impulses stay below this, so that no finite input becomes infinite.
+constexpr btScalar kLargestImpulse = btScalar(1e15);
+
+std::size_t at(int i) { return static_cast<std::size_t>(i); }
+btScalar margin(int axis) { return axis < 3 ? kLinearMargin : kAngularMargin; }
+btScalar bounded(btScalar impulse) { return std::clamp(impulse, -kLargestImpulse, kLargestImpulse); }
+
+// Compliance (per load, at rest) as softness (per impulse): the solver repairs erp/h of the error per second.
+btScalar softness(const AxisSettings& s, btScalar h) {
+  return std::max(s.stop_cfm, btScalar(0)) * s.stop_erp / (h * h);
+}
+
+}  // namespace
+
+void JointConstraint::getInfo1(btConstraintInfo1* info) {
+  read_pose();
+  plan_rows();
+  info->m_numConstraintRows = row_count_;
+  info->nub = 0;
+}
+
+void JointConstraint::getInfo2(btConstraintInfo2* info) {
+  const auto put = [](btScalar* to, const btVector3& v) {
+    to[0] = v.x();
+    to[1] = v.y();
+    to[2] = v.z();
+  };
+  for (int r = 0; r < row_count_; ++r) {
+    const Row& row = rows_[at(r)];
+    const Jacobian j = jacobian(row.axis);
+    const int skip = r * info->rowskip;
+    if (row.axis < 3) {
+      put(info->m_J1linearAxis + skip, -j.linear);
+      put(info->m_J2linearAxis + skip, j.linear);
+    }
+    put(info->m_J1angularAxis + skip, j.angular_a);
+    put(info->m_J2angularAxis + skip, j.angular_b);
+    info->m_constraintError[skip] = row.velocity;
+    info->cfm[skip] = row.softness;
+    info->m_lowerLimit[skip] = row.lower;
+    info->m_upperLimit[skip] = row.upper;
+  }
+}
+
+void JointConstraint::take_impulses(const btSolverConstraint* rows, int count) {
+  for (int r = 0; r < count && r < row_count_; ++r) {
+    const Row& row = rows_[at(r)];
+    if (!row.motor) continue;
+    const btScalar impulse = rows[r].m_appliedImpulse;
+    motor_impulse_[row.axis] = impulse;
+    tick_impulse_[row.axis] += impulse;
+    if (row.softness == 0) pair_inertia_[row.axis] = rows[r].m_jacDiagABInv;
+  }
+  tick_time_ += h_;
+}
+
+void JointConstraint::plan_rows() {
+  row_count_ = 0;
+  stiffness_applied_.fill(0);
+  // what may give comes first, what must hold comes last: the last row of a sweep is met exactly
+  for (int axis = 0; axis < 6; ++axis) {
+    if (!axes_[at(axis)].locked()) plan_motion(axis);
+  }
+  for (int axis = 3; axis < 6; ++axis) {
+    if (axes_[at(axis)].locked()) plan_lock(axis);
+  }
+  for (int axis = 0; axis < 3; ++axis) {
+    if (axes_[at(axis)].locked()) plan_lock(axis);
+  }
+  motor_impulse_.fill(0);
+  previous_rate_ = rate_;
+}
+
+void JointConstraint::add_row(int axis, btScalar velocity, btScalar soft, btScalar lower, btScalar upper, bool motor) {
+  if (row_count_ == kMaxRows) return;
+  rows_[at(row_count_++)] = {velocity, soft, lower, upper, static_cast<std::uint8_t>(axis), motor};
+}
+
+void JointConstraint::plan_lock(int axis) {
+  const AxisSettings& s = axes_[at(axis)];
+  double error = static_cast<double>(s.lower) - value(axis);
+  if (axis >= 3) error = std::remainder(error, 2 * kPi);
+  const btScalar soft = softness(s, h_);
+  btScalar repair = static_cast<btScalar>(error) * s.stop_erp / h_;
+  if (soft == 0) repair = std::clamp(repair, -kFastestRepair, kFastestRepair);
+  add_row(axis, repair, soft, -kInfinity, kInfinity);
+}
+
+void JointConstraint::plan_motion(int axis) {
+  const AxisSettings& s = axes_[at(axis)];
+  if (s.drive == AxisDrive::spring) {
+    plan_spring(axis);
+  } else if (s.drive != AxisDrive::off) {
+    plan_motor(axis);
+  }
+  if (damping_ > 0) add_row(axis, 0, 1 / std::max(damping_ * h_, btScalar(1e-18)), -kInfinity, kInfinity);
+  if (s.friction > 0) {
+    const btScalar most = bounded(s.friction * h_);
+    add_row(axis, 0, 0, -most, most);
+  }
+  if (s.limited()) {
+    plan_limit(axis, false);
+    plan_limit(axis, true);
+  }
+}
+
+// A row that lets the axis just reach the limit within the step; beyond it, one that brings it back.
+void JointConstraint::plan_limit(int axis, bool upper) {
+  const AxisSettings& s = axes_[at(axis)];
+  const btScalar sign = upper ? btScalar(-1) : btScalar(1);
+  const double limit = static_cast<double>(upper ? s.upper : s.lower);
+  const btScalar room = sign * static_cast<btScalar>(value(axis) - limit);
+  const btScalar speed = sign * rate_[at(axis)];  // negative: approaching
+  if (room > margin(axis) + 2 * h_ * std::max(-speed, btScalar(0))) return;
+
+  const btScalar soft = softness(s, h_);
+  btScalar least = -room / h_;
+  if (room < 0) least = soft == 0 ? std::min(least * s.stop_erp, kFastestRepair) : least * s.stop_erp;
+  if (room + h_ * speed <= 0) least = std::max(least, -bounce_ * speed);
+  if (upper) {
+    add_row(axis, -least, soft, -kInfinity, 0);
+  } else {
+    add_row(axis, least, soft, 0, kInfinity);
+  }
+}
+
+void JointConstraint::plan_motor(int axis) {
+  const AxisSettings& s = axes_[at(axis)];
+  const btScalar most = bounded(std::max(s.max_force, btScalar(0)) * h_);
+  btScalar velocity = s.velocity;
+  if (s.drive == AxisDrive::servo) {
+    velocity = servo_velocity(axis);
+  } else if (s.limited()) {
+    // a spinning motor brakes before the limit instead of pressing through it
+    const double x = value(axis);
+    const btScalar up = std::max(static_cast<btScalar>(static_cast<double>(s.upper) - x), btScalar(0)) / h_;
+    const btScalar down = std::min(static_cast<btScalar>(static_cast<double>(s.lower) - x), btScalar(0)) / h_;
+    velocity = std::clamp(velocity, down, up);
+  }
+  add_row(axis, velocity, 0, -most, most, true);
+}
+
+btScalar JointConstraint::servo_velocity(int axis) {
+  const AxisSettings& s = axes_[at(axis)];
+  const float target = s.limited() ? std::clamp(s.target, s.lower, s.upper) : s.target;
+  double error = static_cast<double>(target) - value(axis);
+  if (axis >= 3 && s.free()) error = std::remainder(error, 2 * kPi);
+  const btScalar way = static_cast<btScalar>(std::fabs(error));
+  const btScalar limit = std::fabs(s.velocity);
+  btScalar speed = way / h_ * (limit > 0 ? kServoGain : kEagerServoGain);
+  if (limit > 0) speed = std::min(speed, limit);
+
+  // never faster than the force can brake within the way that is left: v² = 2·a·way
+  learn_inertia(axis);
+  const btScalar inertia = learnt_inertia_[at(axis)];
+  if (inertia > 0) speed = std::min(speed, std::sqrt(2 * kBrakePart * std::max(s.max_force, 0.0f) / inertia * way));
+  return error < 0 ? -speed : speed;
+}
+
+// What a motor moves is more than its two parts: a saturated motor's impulse and the speed it won tell.
+void JointConstraint::learn_inertia(int axis) {
+  const std::size_t i = at(axis);
+  const float pair = pair_inertia_[i];
+  float inertia = std::max(learnt_inertia_[i] * 0.995f, pair);
+  const float impulse = motor_impulse_[i];
+  const float gained = rate_[i] - previous_rate_[i];
+  const bool saturated = std::fabs(impulse) >= 0.98f * axes_[i].max_force * h_;
+  if (saturated && impulse * gained > 0 && std::fabs(rate_[i]) > 1e-3f) {
+    const float measured = std::min(impulse / gained, 2000 * pair);
+    inertia = measured > inertia ? measured : 0.9f * inertia + 0.1f * std::max(measured, pair);
+  }
+  learnt_inertia_[i] = inertia;
+}
+
+// The pull is explicit (symplectic, keeps its energy), the damping implicit (stable for any value): one row does both.
+void JointConstraint::plan_spring(int axis) {
+  const AxisSettings& s = axes_[at(axis)];
+  const btScalar stiffness = capped_stiffness(axis);
+  stiffness_applied_[at(axis)] = stiffness;
+  const btScalar stretch = static_cast<btScalar>(static_cast<double>(s.rest) - value(axis));
+  const btScalar impulse = bounded(stiffness * stretch * h_);
+  if (s.spring_damping > 0) {
+    const btScalar soft = 1 / std::max(s.spring_damping * h_, btScalar(1e-18));
+    add_row(axis, impulse * soft, soft, -kInfinity, kInfinity, true);
+  } else if (stiffness > 0) {
+    add_row(axis, 0, 0, impulse, impulse, true);
+  }
+}
+
+btScalar JointConstraint::capped_stiffness(int axis) const {
+  const btScalar wanted = std::max(axes_[at(axis)].stiffness, btScalar(0));
+  const btScalar h2 = 16 * h_ * h_;
+  // two free parts move more easily than parts held together: where they allow it, the joint does
+  const Jacobian j = jacobian(axis);
+  if (wanted * h2 * mobility(m_rbA, m_rbB, j, j) <= 1) return wanted;
+  return std::min(wanted, static_cast<btScalar>(effective_inertia(axis)) / h2);
+}
+
+}  // namespace limber

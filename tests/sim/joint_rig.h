@@ -1,0 +1,96 @@
+// Rig: a world with bare parts and joints between them, for tests that compare single joints with formulas.
+#pragma once
+
+#include <deque>
+#include <memory>
+#include <vector>
+
+#include "sim/island_world.h"
+
+namespace limber {
+
+inline constexpr double kRigStep = 1.0 / 240.0;
+
+/// Parts have no contacts with anything. Gravity is off until asked for.
+struct Rig {
+  Rig() { world.setGravity(btVector3(0, 0, 0)); }
+  ~Rig() {
+    for (auto& joint : joints) world.removeConstraint(joint.get());
+    for (auto& part : parts) world.removeRigidBody(part.get());
+  }
+  Rig(const Rig&) = delete;
+  Rig& operator=(const Rig&) = delete;
+
+  /// Mass 0: static. `inertia` is the principal tensor, kg·m².
+  btRigidBody& part(double mass, const Vec3& inertia, const Pose& pose = {}) {
+    btRigidBody::btRigidBodyConstructionInfo info(to_scalar(mass), nullptr, &ball, to_bt(inertia));
+    info.m_startWorldTransform = to_bt(pose);
+    parts.push_back(std::make_unique<btRigidBody>(info));
+    parts.back()->setActivationState(DISABLE_DEACTIVATION);
+    world.addRigidBody(parts.back().get(), 0, 0);
+    return *parts.back();
+  }
+  btRigidBody& ground() { return part(0, Vec3(0)); }
+
+  /// Frames in the centre-of-mass frames. Every axis is locked at 0.
+  JointConstraint& joint(btRigidBody& parent, btRigidBody& child, const Pose& in_parent = {},
+                         const Pose& in_child = {}) {
+    joints.push_back(std::make_unique<JointConstraint>(parent, child, to_bt(in_parent), to_bt(in_child)));
+    world.addConstraint(joints.back().get());
+    return *joints.back();
+  }
+
+  void steps(int count, double h = kRigStep) { world.step(h, count); }
+
+  btSphereShape ball{0.05f};
+  std::deque<std::unique_ptr<btRigidBody>> parts;
+  std::deque<std::unique_ptr<JointConstraint>> joints;
+  IslandWorld world{WorldSetup{64, 0.01, 50}};
+};
+
+inline AxisSettings free_axis() {
+  AxisSettings s;
+  s.lower = 1;
+  s.upper = -1;
+  return s;
+}
+inline AxisSettings limited_axis(double lower, double upper) {
+  AxisSettings s;
+  s.lower = static_cast<float>(lower);
+  s.upper = static_cast<float>(upper);
+  return s;
+}
+inline AxisSettings servo_axis(AxisSettings s, double target, double speed, double force) {
+  s.drive = AxisDrive::servo;
+  s.target = static_cast<float>(target);
+  s.velocity = static_cast<float>(speed);
+  s.max_force = static_cast<float>(force);
+  return s;
+}
+inline AxisSettings spin_axis(AxisSettings s, double speed, double force) {
+  s.drive = AxisDrive::spin;
+  s.velocity = static_cast<float>(speed);
+  s.max_force = static_cast<float>(force);
+  return s;
+}
+inline AxisSettings spring_axis(AxisSettings s, double rest, double stiffness, double damping = 0) {
+  s.drive = AxisDrive::spring;
+  s.rest = static_cast<float>(rest);
+  s.stiffness = static_cast<float>(stiffness);
+  s.spring_damping = static_cast<float>(damping);
+  return s;
+}
+
+/// Unit vector of an axis 0..2 or 3..5.
+inline Vec3 unit(int axis) { return {axis % 3 == 0 ? 1.0 : 0.0, axis % 3 == 1 ? 1.0 : 0.0, axis % 3 == 2 ? 1.0 : 0.0}; }
+
+/// Gives the child of a joint to a resting parent the rate of one axis.
+inline void kick(btRigidBody& child, int axis, double rate) {
+  if (axis < 3) {
+    child.setLinearVelocity(to_bt(unit(axis) * rate));
+  } else {
+    child.setAngularVelocity(to_bt(unit(axis) * rate));
+  }
+}
+
+}  // namespace limber
