@@ -137,6 +137,7 @@ std::string library_complaint(const Room& room, std::string_view name) {
 
 std::vector<std::string> rooms() {
   std::vector<std::string> names;
+  names.reserve(kRooms.size());
   for (const Room& room : kRooms) names.emplace_back(room.name);
   return names;
 }

@@ -8,6 +8,7 @@
 #include <filesystem>
 #include <fstream>
 #include <iterator>
+#include <ostream>
 #include <string>
 #include <vector>
 
@@ -145,6 +146,9 @@ struct Refusal {
   const char* text;
   const char* cure;
 };
+
+/// GoogleTest names a failed parameter with this.
+std::ostream& operator<<(std::ostream& out, const Refusal& refusal) { return out << refusal.name; }
 
 class Refusals : public testing::TestWithParam<Refusal> {};
 
