@@ -12,14 +12,14 @@
 
 namespace limber {
 
-/// Triangles as they are drawn, and the reduced hull as it collides. Metres, in the mesh's own frame, scale applied.
-struct MeshModel {
-  std::string name;                  ///< The file's stem, for messages.
-  std::vector<Vec3> vertices;        ///< Merged vertices of the drawn mesh.
-  std::vector<unsigned> triangles;   ///< Three indices a triangle, counter-clockwise seen from outside.
-  std::vector<Vec3> hull;            ///< Hull vertices for contact, reduced (physics.md: 16..64).
-  double hull_error = 0;             ///< Farthest vertex left out of the hull, metres.
+/// Mass, centre and tensor.
+struct Inertial {
+  double mass = 0;
+  Vec3 center{0, 0, 0};  ///< Centre of mass, in the frame of the link or mesh.
+  Mat3 tensor{0};        ///< About the centre of mass, along the frame's axes, kg·m².
 };
+
+struct MeshModel;
 
 enum class ShapeKind { plane, sphere, box, cylinder, capsule, cone, mesh, compound };
 
@@ -32,33 +32,41 @@ struct ShapeModel {
   Vec3 size{1, 1, 1};
   double radius = 0.5;
   double height = 1;
+  /// Set for `kind` mesh, and for a mesh that was recognised as a box, sphere or capsule: then `kind` and the
+  /// dimensions say what collides, and `mesh` stays for drawing, at `mesh_pose` in the shape's frame.
   std::shared_ptr<const MeshModel> mesh;
-  /// Set when a mesh was recognised as a box or capsule: `kind` and the dimensions say which, `mesh` is still drawn.
+  Pose mesh_pose;
 };
 
 /// A geometry placed in its link's frame.
 struct PlacedShape {
   ShapeModel shape;
-  Pose origin;                           ///< In the link's frame.
-  std::optional<Vec3> color;             ///< r g b 0..1, visuals only.
+  Pose origin;                ///< In the link's frame.
+  std::optional<Vec3> color;  ///< r g b 0..1, visuals only.
   double alpha = 1;
 };
 
-/// Mass, centre and tensor, in the link's frame.
-struct Inertial {
-  double mass = 0;
-  Vec3 center{0, 0, 0};                  ///< Centre of mass, link frame.
-  Mat3 tensor{0};                        ///< About the centre of mass, link's axes, kg·m².
+/// Triangles as they are drawn, and the reduced hull as it collides. Metres, in the mesh's own frame, scale applied.
+struct MeshModel {
+  std::string name;                 ///< The file's stem, for messages.
+  std::vector<Vec3> vertices;       ///< Merged vertices of the drawn mesh.
+  std::vector<unsigned> triangles;  ///< Three indices a triangle, counter-clockwise seen from outside.
+  std::vector<Vec3> hull;           ///< Hull vertices for contact, reduced (physics.md: 16..64).
+  double hull_error = 0;            ///< Distance of the farthest vertex left out from the reduced hull, metres.
+  /// What the whole hull is, when that is a box, sphere or capsule; in the mesh's frame.
+  std::optional<PlacedShape> primitive;
+  bool closed = false;  ///< Watertight: its own volume counts, else the hull's.
+  Inertial solid;       ///< At density 1 kg/m³, so that `mass` is the volume in m³.
 };
 
 /// One link of the file that moves on its own: fixed children are already merged in, unless kept.
 struct LinkModel {
   std::string name;
-  Inertial inertial;                     ///< After merging, defaults and repairs; mass 0: static.
-  std::vector<PlacedShape> collisions;   ///< Merged children's included, in this link's frame.
+  Inertial inertial;                    ///< After merging, defaults and repairs; mass 0: static.
+  std::vector<PlacedShape> collisions;  ///< Merged children's included, in this link's frame.
   std::vector<PlacedShape> visuals;
-  Pose home;                             ///< World pose with all joints at 0 and the root at the origin.
-  Pose start;                            ///< World pose as placed at the start (joint values within their limits).
+  Pose home;   ///< World pose with all joints at 0 and the root at the origin.
+  Pose start;  ///< World pose as placed at the start (joint values within their limits).
 };
 
 enum class JointType { fixed, revolute, continuous, prismatic, planar, floating, spherical };
@@ -66,19 +74,20 @@ enum class JointType { fixed, revolute, continuous, prismatic, planar, floating,
 struct JointModel {
   std::string name;
   JointType type = JointType::revolute;
-  int parent = -1;                       ///< Index into BodyModel::links.
+  int parent = -1;  ///< Index into BodyModel::links.
   int child = -1;
-  Pose frame_in_parent;                  ///< Joint frame in the parent link's frame, z = the axis.
-  Pose frame_in_child;                   ///< The same in the child link's frame (position 0: the child's origin).
-  bool limited = false;                  ///< false: free; else lower <= upper, rad or m.
+  Pose frame_in_parent;  ///< Joint frame in the parent link's frame, z = the axis.
+  Pose frame_in_child;   ///< The same in the child link's frame (position 0: the child's origin).
+  bool limited = false;  ///< false: free; else lower <= upper, rad or m.
   double lower = 0;
   double upper = 0;
-  double effort = 10000;                 ///< N·m or N, after the default for 0 or absent.
-  double velocity = 0;                   ///< rad/s or m/s as the file says; 0: as fast as the effort allows.
-  double damping = 0;                    ///< <dynamics damping>, N·m·s/rad or N·s/m.
-  double friction = 0;                   ///< <dynamics friction>, Coulomb limit, N·m or N.
-  double start = 0;                      ///< Joint value that `LinkModel::start` was placed with.
-  /// Mimic: value = multiplier * (value of joint `mimic`) + offset; -1: none.
+  double effort = 10000;  ///< N·m or N, after the default for 0 or absent.
+  double velocity = 0;    ///< rad/s or m/s as the file says; 0: as fast as the effort allows.
+  double damping = 0;     ///< <dynamics damping>, N·m·s/rad or N·s/m.
+  double friction = 0;    ///< <dynamics friction>, Coulomb limit, N·m or N.
+  double start = 0;       ///< Joint value that `LinkModel::start` was placed with.
+  /// Mimic: value = multiplier * (value of joint `mimic`) + offset; -1: none. The joint it follows follows no other:
+  /// chains are resolved by the importer.
   int mimic = -1;
   double mimic_multiplier = 1;
   double mimic_offset = 0;
@@ -87,27 +96,27 @@ struct JointModel {
 /// A frame that was merged away: a fixed child link, still addressable (`body:link(name)`).
 struct MergedLink {
   std::string name;
-  int link = -1;                         ///< Index of the link that carries it.
-  Pose offset;                           ///< Its frame in that link's frame.
+  int link = -1;  ///< Index of the link that carries it.
+  Pose offset;    ///< Its frame in that link's frame.
 };
 
 enum class Severity { note, warning, error };
 
 /// One complaint about the file, with place and cure.
 struct Problem {
-  int line = 0;                          ///< 1-based; 0: no place in the file.
+  int line = 0;  ///< 1-based; 0: no place in the file.
   Severity severity = Severity::warning;
-  std::string text;                      ///< What is wrong, naming the thing.
-  std::string cure;                      ///< What to do about it.
+  std::string text;  ///< What is wrong, naming the thing.
+  std::string cure;  ///< What to do about it.
 };
 
 /// As the file has it, before merging: what `inspect` prints.
 struct FileLink {
   std::string name;
-  double mass = 0;                       ///< As written (0 when there is none).
+  double mass = 0;  ///< As written (0 when there is none).
   Vec3 center{0, 0, 0};
   Mat3 tensor{0};
-  int collisions = 0;                    ///< Loaded.
+  int collisions = 0;  ///< Loaded.
   int visuals = 0;
   Pose home;
   Pose start;
@@ -117,8 +126,8 @@ struct FileJoint {
   std::string type;
   std::string parent;
   std::string child;
-  Vec3 axis{0, 0, 1};                    ///< Unit, in the joint's frame.
-  bool free = true;                      ///< Unlimited.
+  Vec3 axis{0, 0, 1};  ///< Unit, in the joint's frame.
+  bool free = true;    ///< Unlimited.
   double lower = 0;
   double upper = 0;
   double effort = 0;
@@ -128,13 +137,14 @@ struct FileJoint {
 /// A body, ready to be built. Links and joints in stream order: root first, depth first, joints in file order.
 struct BodyModel {
   std::string name;
-  std::string file;                      ///< Where it came from, for messages.
-  std::vector<LinkModel> links;          ///< links[0] is the root.
-  std::vector<JointModel> joints;        ///< parent index < child index, always.
+  std::string file;                ///< Where it came from, for messages.
+  std::vector<LinkModel> links;    ///< links[0] is the root.
+  std::vector<JointModel> joints;  ///< parent index < child index, always.
   std::vector<MergedLink> merged;
   std::vector<FileLink> file_links;
   std::vector<FileJoint> file_joints;
   std::vector<Problem> problems;
+  std::vector<std::string> files;  ///< Every file that was read for it: the URDF and its meshes.
 };
 
 }  // namespace limber

@@ -1,0 +1,48 @@
+// Finds mesh files by the URIs that URDF files use, and keeps what was loaded: one file and scale, one shared mesh.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <map>
+#include <memory>
+#include <mutex>
+#include <string>
+#include <vector>
+
+#include "base/result.h"
+#include "model/body_model.h"
+
+namespace limber {
+
+/// Where `uri` (package://, model://, file://, relative or absolute path) leads from the folder of the URDF: first as
+/// it stands, then below each of `package_paths`, then from the folder upwards, with and without its leading parts.
+/// The error says where it looked. Nothing is fetched from a network. [any]
+Result<std::string> find_mesh(const std::string& uri, const std::string& folder,
+                              const std::vector<std::string>& package_paths);
+
+/// Size and time of a file: whether it is still the one that was read.
+struct FileStamp {
+  std::uintmax_t size = 0;
+  std::filesystem::file_time_type time{};
+
+  bool operator==(const FileStamp&) const = default;
+};
+/// Zero for a file that can't be asked. [any]
+FileStamp stamp_of(const std::string& path);
+
+/// Loaded meshes by file and scale. Never more than one of each is kept; a changed file is loaded anew. [any]
+class MeshLibrary {
+ public:
+  Result<std::shared_ptr<const MeshModel>> load(const std::string& path, const Vec3& scale);
+
+ private:
+  struct Entry {
+    FileStamp stamp;
+    std::shared_ptr<const MeshModel> mesh;
+  };
+
+  std::mutex mutex_;
+  std::map<std::string, Entry> meshes_;
+};
+
+}  // namespace limber

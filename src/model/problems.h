@@ -1,0 +1,52 @@
+// Collects the complaints about one file, bounded, so that a hostile file can't fill the memory with them.
+#pragma once
+
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "model/body_model.h"
+
+namespace limber {
+
+class Problems {
+ public:
+  static constexpr std::size_t kMost = 300;
+
+  void note(int line, std::string text, std::string cure) {
+    add(line, Severity::note, std::move(text), std::move(cure));
+  }
+  void warning(int line, std::string text, std::string cure) {
+    add(line, Severity::warning, std::move(text), std::move(cure));
+  }
+  void error(int line, std::string text, std::string cure) {
+    add(line, Severity::error, std::move(text), std::move(cure));
+  }
+
+  /// Everything that was added, in order; past the first 300, one line says how many more there were.
+  std::vector<Problem> take() {
+    if (dropped_ > 0) {
+      list_.push_back({last_line_, Severity::warning, std::to_string(dropped_) + " more complaints are not listed",
+                       "Mend the ones above and import again."});
+    }
+    dropped_ = 0;
+    return std::move(list_);
+  }
+  const std::vector<Problem>& list() const { return list_; }
+
+ private:
+  void add(int line, Severity severity, std::string text, std::string cure) {
+    if (list_.size() < kMost) {
+      list_.push_back({line, severity, std::move(text), std::move(cure)});
+    } else {
+      ++dropped_;
+      last_line_ = line;
+    }
+  }
+
+  std::vector<Problem> list_;
+  std::size_t dropped_ = 0;
+  int last_line_ = 0;
+};
+
+}  // namespace limber

@@ -1,0 +1,126 @@
+// Boxes by their faces' directions, spheres and capsules by their vertices' distance from the axis.
+#include "model/shape_recognise.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <vector>
+
+#include "model/mass_properties.h"
+
+namespace limber {
+
+namespace {
+
+struct Span {
+  double low, high;
+};
+
+Span span_along(const std::vector<Vec3>& points, const Vec3& axis) {
+  Span s{glm::dot(points[0], axis), glm::dot(points[0], axis)};
+  for (const Vec3& p : points) {
+    const double d = glm::dot(p, axis);
+    s.low = std::min(s.low, d);
+    s.high = std::max(s.high, d);
+  }
+  return s;
+}
+
+/// The frame's place whose axes are x, y, z and whose coordinates along them are given.
+Pose pose_of(const Mat3& axes, const Vec3& along) { return {axes * along, glm::normalize(glm::quat_cast(axes))}; }
+
+/// Face normals weighted by area, largest first.
+std::vector<Vec3> face_normals(const Hull& hull) {
+  std::vector<Vec3> normals;
+  for (std::size_t i = 0; i + 2 < hull.triangles.size(); i += 3) {
+    const Vec3& a = hull.vertices[hull.triangles[i]];
+    normals.push_back(glm::cross(hull.vertices[hull.triangles[i + 1]] - a, hull.vertices[hull.triangles[i + 2]] - a) /
+                      2.0);
+  }
+  std::stable_sort(normals.begin(), normals.end(),
+                   [](const Vec3& a, const Vec3& b) { return glm::dot(a, a) > glm::dot(b, b); });
+  return normals;
+}
+
+std::optional<PlacedShape> as_box(const Hull& hull, double volume) {
+  if (hull.vertices.size() < 8) return std::nullopt;
+  const std::vector<Vec3> normals = face_normals(hull);
+  constexpr double kSquare = 1e-3;
+  Mat3 axes(0);
+  axes[0] = normalized(normals[0]);
+  int found = 1;
+  for (const Vec3& n : normals) {
+    const Vec3 d = normalized(n);
+    if (std::abs(glm::dot(d, axes[0])) > kSquare) continue;
+    axes[1] = normalized(d - glm::dot(d, axes[0]) * axes[0]);
+    found = 2;
+    break;
+  }
+  if (found < 2) return std::nullopt;
+  axes[2] = glm::cross(axes[0], axes[1]);
+  // name the axes so that the box keeps the mesh's own when they agree
+  for (int i = 0; i < 3; ++i) {
+    for (int k = i + 1; k < 3; ++k) {
+      if (std::abs(axes[k][i]) > std::abs(axes[i][i]) + 1e-9) std::swap(axes[i], axes[k]);
+    }
+    if (axes[i][i] < 0) axes[i] = -axes[i];
+  }
+  if (glm::determinant(axes) < 0) axes[2] = -axes[2];
+  PlacedShape out;
+  out.shape.kind = ShapeKind::box;
+  Vec3 middle(0);
+  for (int i = 0; i < 3; ++i) {
+    const Span s = span_along(hull.vertices, axes[i]);
+    out.shape.size[i] = s.high - s.low;
+    middle[i] = (s.low + s.high) / 2;
+  }
+  const double full = out.shape.size.x * out.shape.size.y * out.shape.size.z;
+  if (std::abs(volume - full) > 1e-3 * full) return std::nullopt;
+  out.origin = pose_of(axes, middle);
+  return out;
+}
+
+double distance_from_segment(const Vec3& p, const Vec3& center, const Vec3& axis, double half) {
+  const double along = std::clamp(glm::dot(p - center, axis), -half, half);
+  return glm::length(p - center - along * axis);
+}
+
+std::optional<PlacedShape> as_capsule(const Hull& hull, const Inertial& solid) {
+  // fewer corners lie on a sphere by chance: cubes, icosahedra
+  if (hull.vertices.size() < 24) return std::nullopt;
+  const Mat3 principal = principal_of(solid.tensor).axes;
+  const Vec3 axis = principal[0];
+  const Span length = span_along(hull.vertices, axis);
+  const Vec3 center = solid.center + ((length.low + length.high) / 2 - glm::dot(solid.center, axis)) * axis;
+  double radius = 0;
+  for (const Vec3& p : hull.vertices)
+    radius = std::max(radius, glm::length(p - center - glm::dot(p - center, axis) * axis));
+  const double half = (length.high - length.low) / 2 - radius;
+  const bool sphere = std::abs(half) <= 0.01 * radius;
+  if (half < 0 && !sphere) return std::nullopt;
+  for (const Vec3& p : hull.vertices) {
+    if (std::abs(distance_from_segment(p, center, axis, sphere ? 0 : half) - radius) > 0.01 * radius)
+      return std::nullopt;
+  }
+  PlacedShape out;
+  out.shape.kind = sphere ? ShapeKind::sphere : ShapeKind::capsule;
+  out.shape.radius = radius;
+  out.shape.height = sphere ? 0 : 2 * half;
+  if (solid.mass < 0.9 * solid_of(out.shape).mass) return std::nullopt;
+  const Vec3 z = axis.z < 0 ? -axis : axis;
+  const Vec3 helper = std::abs(z.x) < 0.7 ? Vec3(1, 0, 0) : Vec3(0, 1, 0);
+  const Vec3 y = normalized(glm::cross(z, helper));
+  out.origin = {center, sphere ? quat_identity() : glm::normalize(glm::quat_cast(Mat3(glm::cross(y, z), y, z)))};
+  return out;
+}
+
+}  // namespace
+
+std::optional<PlacedShape> recognise(const Hull& whole) {
+  const Inertial solid = solid_of(whole.vertices, whole.triangles);
+  if (!(solid.mass > 0)) return std::nullopt;
+  std::optional<PlacedShape> box = as_box(whole, solid.mass);
+  return box ? box : as_capsule(whole, solid);
+}
+
+}  // namespace limber

@@ -1,0 +1,81 @@
+// A URDF as the file has it, checked and with numbers read: what stands between the XML and a BodyModel.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "base/vec.h"
+#include "model/body_model.h"
+
+namespace limber {
+
+struct UrdfOrigin {
+  Vec3 xyz{0, 0, 0};
+  Vec3 rpy{0, 0, 0};  ///< Fixed axes, radians.
+
+  Pose pose() const { return {xyz, quat_euler(rpy.x, rpy.y, rpy.z)}; }
+};
+
+struct UrdfInertial {
+  double mass = 0;
+  UrdfOrigin origin;
+  bool has_tensor = false;
+  Mat3 tensor{0};  ///< As written: along the inertial origin's axes.
+};
+
+/// A visual or collision element. `shape.kind` mesh has its file in `mesh_uri`, not loaded yet.
+struct UrdfShape {
+  int line = 0;
+  UrdfOrigin origin;
+  ShapeModel shape;
+  std::string mesh_uri;
+  Vec3 mesh_scale{1, 1, 1};
+  std::string material;  ///< Name, to be looked up when there is no colour of its own.
+  std::optional<Vec3> color;
+  double alpha = 1;
+};
+
+struct UrdfLink {
+  std::string name;
+  int line = 0;
+  std::optional<UrdfInertial> inertial;
+  std::vector<UrdfShape> collisions;
+  std::vector<UrdfShape> visuals;
+};
+
+struct UrdfMimic {
+  int line = 0;
+  std::string joint;
+  double multiplier = 1;
+  double offset = 0;
+};
+
+struct UrdfJoint {
+  std::string name;
+  int line = 0;
+  JointType type = JointType::fixed;
+  std::string parent;
+  std::string child;
+  UrdfOrigin origin;
+  Vec3 axis{1, 0, 0};  ///< Unit.
+  bool limited = false;
+  double lower = 0;
+  double upper = 0;
+  double effort = 0;    ///< As written; 0: absent.
+  double velocity = 0;  ///< As written; 0: absent.
+  double damping = 0;
+  double friction = 0;
+  std::optional<UrdfMimic> mimic;
+};
+
+struct UrdfFile {
+  std::string name;
+  std::vector<UrdfLink> links;
+  std::vector<UrdfJoint> joints;
+};
+
+/// "revolute", as URDF spells it.
+std::string_view joint_type_name(JointType type);
+
+}  // namespace limber

@@ -1,0 +1,137 @@
+// The way of a URDF file: bytes, clean text, checked file, tree, urdfdom's second opinion, meshes, body.
+#include "model/urdf_import.h"
+
+#include <algorithm>
+#include <exception>
+#include <filesystem>
+#include <map>
+#include <set>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "base/text.h"
+#include "model/mesh_load.h"
+#include "model/problems.h"
+#include "model/urdf_build.h"
+#include "model/urdf_check.h"
+#include "model/urdf_confirm.h"
+#include "model/urdf_text.h"
+#include "model/urdf_tree.h"
+
+namespace limber {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+/// Loads the meshes that the tree's links name; shapes whose mesh can't be had are left out and said.
+class MeshStep {
+ public:
+  MeshStep(const std::string& path, const ImportOptions& options, MeshLibrary& meshes, Problems& problems)
+      : folder_(fs::path(path).parent_path().string()), options_(options), meshes_(meshes), problems_(problems) {}
+
+  void run(UrdfFile& file, const std::vector<UrdfNode>& tree) {
+    for (const UrdfNode& node : tree) {
+      UrdfLink& link = file.links[static_cast<std::size_t>(node.link)];
+      std::erase_if(link.collisions, [&](UrdfShape& s) { return !fill(s, link.name, "collision"); });
+      std::erase_if(link.visuals, [&](UrdfShape& s) { return !fill(s, link.name, "visual"); });
+    }
+  }
+  const std::set<std::string>& files() const { return files_; }
+
+ private:
+  using Found = Result<std::shared_ptr<const MeshModel>>;
+
+  bool fill(UrdfShape& shape, const std::string& link, const char* kind) {
+    if (shape.shape.kind != ShapeKind::mesh) return true;
+    const Found& mesh = get(shape.mesh_uri, shape.mesh_scale);
+    if (!mesh) {
+      // the last sentence of an error is its cure
+      const std::string& text = mesh.error();
+      const std::size_t cure = std::min(text.rfind(". ") + 1, text.size());
+      problems_.error(shape.line,
+                      fmt::format("link '{}': {} mesh left out: {}", printable(link), kind, text.substr(0, cure)),
+                      text.substr(std::min(cure + 1, text.size())));
+      return false;
+    }
+    shape.shape.mesh = *mesh;
+    return true;
+  }
+
+  const Found& get(const std::string& uri, const Vec3& scale) {
+    const std::string key = fmt::format("{}|{:a}|{:a}|{:a}", uri, scale.x, scale.y, scale.z);
+    const auto known = found_.find(key);
+    return known != found_.end() ? known->second : found_.emplace(key, load(uri, scale)).first->second;
+  }
+
+  Found load(const std::string& uri, const Vec3& scale) {
+    // asked before the disk is, so that '../../etc/passwd' is no more than a wrong ending
+    if (const Result<MeshFormat> format = mesh_format_of(uri); !format) {
+      return Error{fmt::format("'{}' {}", printable(uri), format.error())};
+    }
+    const Result<std::string> file = find_mesh(uri, folder_, options_.package_paths);
+    if (!file) return Error{file.error()};
+    files_.insert(*file);
+    return meshes_.load(*file, scale);
+  }
+
+  std::string folder_;
+  const ImportOptions& options_;
+  MeshLibrary& meshes_;
+  Problems& problems_;
+  std::map<std::string, Found> found_;
+  std::set<std::string> files_;
+};
+
+Result<std::shared_ptr<const BodyModel>> import_bytes(std::string_view bytes, const std::string& path,
+                                                      const ImportOptions& options, MeshLibrary& meshes) {
+  const std::string shown = printable(path);
+  Problems problems;
+  const Result<std::string> text = clean_urdf_text(bytes, problems);
+  if (!text) return Error{fmt::format("{}:1: {}", shown, text.error())};
+  Result<UrdfFile> file = check_urdf(*text, fs::path(path).stem().string(), problems);
+  if (!file) return Error{fmt::format("{}:{}", shown, file.error())};
+  const Result<std::vector<UrdfNode>> tree = find_tree(*file, problems);
+  if (!tree) return Error{fmt::format("{}:{}", shown, tree.error())};
+  confirm_with_urdfdom(*file, *tree, problems);
+
+  auto model = std::make_shared<BodyModel>();
+  model->name = file->name;
+  model->file = path;
+  MeshStep step(path, options, meshes, problems);
+  step.run(*file, *tree);
+  UrdfBuild build{*file, *tree, options, problems, *model, {}, {}, {}};
+  build_structure(build);
+  build_masses(build);
+  if (const Result<void> posed = build_poses(build); !posed) return Error{fmt::format("{}: {}", shown, posed.error())};
+  model->problems = problems.take();
+  model->files.assign(1, path);
+  model->files.insert(model->files.end(), step.files().begin(), step.files().end());
+  return std::shared_ptr<const BodyModel>(std::move(model));
+}
+
+}  // namespace
+
+Result<std::shared_ptr<const BodyModel>> import_urdf_text(std::string_view text, const std::string& path,
+                                                          const ImportOptions& options, MeshLibrary& meshes) {
+  try {
+    return import_bytes(text, path, options, meshes);
+  } catch (const std::exception& e) {
+    return Error{fmt::format("{}: can't be imported: {}. Simplify the file.", printable(path), printable(e.what()))};
+  }
+}
+
+Result<std::shared_ptr<const BodyModel>> import_urdf(const std::string& path, const ImportOptions& options,
+                                                     MeshLibrary& meshes) {
+  const Result<std::string> bytes = read_whole_file(path, kMostUrdfBytes);
+  if (!bytes) return Error{bytes.error()};
+  return import_urdf_text(*bytes, path, options, meshes);
+}
+
+Result<std::shared_ptr<const BodyModel>> import_urdf(const std::string& path, const ImportOptions& options) {
+  MeshLibrary meshes;
+  return import_urdf(path, options, meshes);
+}
+
+}  // namespace limber

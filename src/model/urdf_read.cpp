@@ -1,0 +1,191 @@
+// Attributes of URDF elements: numbers, vectors, origins, colours.
+#include "model/urdf_read.h"
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "base/text.h"
+
+namespace limber {
+
+namespace {
+
+constexpr std::string_view kBlanks = " \t\r\n";
+
+std::string_view trimmed(std::string_view text) {
+  const std::size_t first = text.find_first_not_of(kBlanks);
+  if (first == std::string_view::npos) return {};
+  return text.substr(first, text.find_last_not_of(kBlanks) - first + 1);
+}
+
+std::string shown(std::string_view text) {
+  constexpr std::size_t kMost = 60;
+  return printable(text.substr(0, kMost)) + (text.size() > kMost ? "…" : "");
+}
+
+/// Why a text is no number, and what to do; an empty fault when it is one.
+struct NumberText {
+  double value = 0;
+  const char* fault = "";
+  const char* cure = "";
+};
+
+NumberText read_number(std::string_view text) {
+  if (text.empty()) return {0, "is empty", "Write a number."};
+  if (text.find("${") != std::string_view::npos || text.find("$(") != std::string_view::npos) {
+    return {0, "is a xacro expression", "Run xacro on the file first."};
+  }
+  std::string_view digits = text;
+  if (digits.front() == '+') digits.remove_prefix(1);
+  double value = 0;
+  const auto [end, fault] = std::from_chars(digits.data(), digits.data() + digits.size(), value);
+  const bool whole = end == digits.data() + digits.size();
+  if (fault == std::errc::result_out_of_range && whole) {
+    // an exponent too small to be told from 0 is 0, one too large is no number
+    const std::size_t e = digits.find_first_of("eE");
+    if (e != std::string_view::npos && e + 1 < digits.size() && digits[e + 1] == '-') return {0, "", ""};
+    return {0, "is too large for a number", "Write a number of a sensible size."};
+  }
+  if (fault != std::errc() || !whole) {
+    if (text.find(',') != std::string_view::npos) return {0, "is not a number", "Write a decimal point, not a comma."};
+    return {0, "is not a number", "Write a plain decimal number such as 1.5 or 2e-3."};
+  }
+  if (!std::isfinite(value)) return {0, "is not finite", "Write a finite number."};
+  return {value, "", ""};
+}
+
+bool is_odd(std::string_view text) {
+  const char last = text.back();
+  const std::string_view digits = text.front() == '-' ? text.substr(1) : text;
+  return text.front() == '+' || last == '.' || (!digits.empty() && digits.front() == '.');
+}
+
+}  // namespace
+
+std::string_view UrdfReader::name_of(const Element& element) const {
+  std::string_view name = element.Name();
+  if (!prefix_.empty() && name.starts_with(prefix_)) name.remove_prefix(prefix_.size());
+  return name;
+}
+
+const UrdfReader::Element* UrdfReader::child(const Element& parent, std::string_view name) const {
+  const Element* element = parent.FirstChildElement();
+  while (element && name_of(*element) != name) element = element->NextSiblingElement();
+  return element;
+}
+
+const UrdfReader::Element* UrdfReader::only_child(const Element& parent, std::string_view name,
+                                                  const std::string& owner) {
+  const Element* found = child(parent, name);
+  if (!found) return nullptr;
+  for (const Element* next = found->NextSiblingElement(); next; next = next->NextSiblingElement()) {
+    if (name_of(*next) != name) continue;
+    problems.warning(next->GetLineNum(), fmt::format("{} has more than one <{}>; the first counts", owner, name),
+                     "Take the others out.");
+    break;
+  }
+  return found;
+}
+
+std::optional<double> UrdfReader::one_number(std::string_view text, int line, const std::string& where,
+                                             const NumberRange& range) {
+  const std::string_view digits = trimmed(text);
+  const NumberText read = read_number(digits);
+  if (*read.fault) {
+    problems.error(line, fmt::format("{}: '{}' {}; left out", where, shown(text), read.fault), read.cure);
+    return std::nullopt;
+  }
+  if (read.value < range.lowest || read.value > range.highest) {
+    problems.error(line, fmt::format("{}: '{}' is out of range; left out", where, shown(text)),
+                   fmt::format("Write a number {}.", range.text));
+    return std::nullopt;
+  }
+  if (is_odd(digits) && odd_numbers_++ == 0) {
+    odd_line_ = line;
+    odd_text_ = shown(digits);
+  }
+  return read.value;
+}
+
+std::optional<double> UrdfReader::number(const Element& element, const char* attribute, const std::string& owner,
+                                         const NumberRange& range) {
+  const tinyxml2::XMLAttribute* found = element.FindAttribute(attribute);
+  if (!found) return std::nullopt;
+  const std::string where = fmt::format("{}: <{} {}>", owner, name_of(element), attribute);
+  return one_number(found->Value(), found->GetLineNum(), where, range);
+}
+
+std::optional<Vec3> UrdfReader::vector(const Element& element, const char* attribute, const std::string& owner,
+                                       const NumberRange& range) {
+  const tinyxml2::XMLAttribute* found = element.FindAttribute(attribute);
+  if (!found) return std::nullopt;
+  const std::string where = fmt::format("{}: <{} {}>", owner, name_of(element), attribute);
+  const std::string_view text = found->Value();
+  Vec3 out{0, 0, 0};
+  std::size_t at = text.find_first_not_of(kBlanks);
+  int count = 0;
+  for (; at != std::string_view::npos; ++count) {
+    const std::size_t end = std::min(text.find_first_of(kBlanks, at), text.size());
+    if (count < 3) {
+      const std::optional<double> value = one_number(text.substr(at, end - at), found->GetLineNum(), where, range);
+      if (!value) return std::nullopt;
+      out[count] = *value;
+    }
+    at = text.find_first_not_of(kBlanks, end);
+  }
+  if (count == 3) return out;
+  problems.error(found->GetLineNum(),
+                 fmt::format("{}: '{}' has {} numbers, not 3; left out", where, shown(text), count),
+                 "Write three numbers with blanks between them.");
+  return std::nullopt;
+}
+
+UrdfOrigin UrdfReader::origin(const Element& parent, const std::string& owner) {
+  UrdfOrigin out;
+  const Element* element = only_child(parent, "origin", owner);
+  if (!element) return out;
+  out.xyz = vector(*element, "xyz", owner, kPlaceRange).value_or(Vec3(0));
+  out.rpy = vector(*element, "rpy", owner, kAngleRange).value_or(Vec3(0));
+  return out;
+}
+
+bool UrdfReader::color(const Element& material, const std::string& owner, std::optional<Vec3>& color, double& alpha) {
+  const Element* element = child(material, "color");
+  if (!element) return false;
+  const char* text = element->Attribute("rgba");
+  std::vector<double> parts;
+  bool good = text != nullptr;
+  for (std::string_view rest = text ? text : ""; good && !trimmed(rest).empty();) {
+    rest = trimmed(rest);
+    const std::size_t end = std::min(rest.find_first_of(kBlanks), rest.size());
+    const NumberText read = read_number(rest.substr(0, end));
+    good = *read.fault == '\0' && parts.size() < 4;
+    parts.push_back(std::clamp(read.value, 0.0, 1.0));
+    rest.remove_prefix(end);
+  }
+  if (!good || (parts.size() != 3 && parts.size() != 4)) {
+    problems.warning(element->GetLineNum(),
+                     fmt::format("{}: <color rgba='{}'> is no colour; left out", owner, shown(text ? text : "")),
+                     "Write four numbers from 0 to 1: red green blue alpha.");
+    return false;
+  }
+  color = Vec3(parts[0], parts[1], parts[2]);
+  alpha = parts.size() == 4 ? parts[3] : 1;
+  return true;
+}
+
+void UrdfReader::finish() {
+  if (odd_numbers_ == 0) return;
+  problems.note(
+      odd_line_,
+      fmt::format("{} number(s) are spelled in a way that some readers refuse, the first is '{}'; they were read",
+                  odd_numbers_, odd_text_),
+      "Write digits on both sides of the point and no '+': 0.5, 5.0, 1.");
+}
+
+}  // namespace limber
