@@ -11,7 +11,7 @@ namespace limber {
 /// A body in a snapshot. Its joints stand in stream order.
 struct RosterBody {
   std::string name;
-  bool enabled = true;
+  std::uint32_t enabled_at = 0;  ///< Where its `enabled` (1 or 0) stands in Snapshot::live.
   std::vector<std::string> joint_names;
   std::vector<std::uint32_t> joints;  ///< Where each joint's block begins in Snapshot::live.
   std::vector<std::uint32_t> parts;   ///< The same for parts.

@@ -75,6 +75,15 @@ void World::clear() {
   bodies_.clear();
   shapes_.clear();
   geometries_.clear();
+  for (const Row& row : table().rows()) {
+    if (row.kind == RowKind::property) (void)store_.set(id_, row, {row.initial.data(), row.width});
+  }
+}
+
+void World::restart_time() {
+  tick_ = 0;
+  store_.tell(id_, *world_rows().time)[0] = 0;
+  store_.tell(id_, *world_rows().tick)[0] = 0;
 }
 
 Result<void> World::name_is_free(NodeId group, std::string_view kind, std::string_view name) const {

@@ -59,10 +59,14 @@ class World {
   void step();
   /// Effects and readouts without time passing: while paused, and before the first tick.
   void settle();
+  /// Between two ticks, by whoever runs the scene.
+  void ask_reset() { reset_asked_ = true; }
   /// Whether sim:reset or /transport/reset asked for a reset since the last call.
   bool take_reset_request() { return std::exchange(reset_asked_, false); }
-  /// Removes every body and shape.
+  /// Removes every body and shape; the world's own rows return to their defaults.
   void clear();
+  /// Time and ticks from 0.
+  void restart_time();
 
   /// Parts with `report_contacts` that began to touch in the last tick, in a fixed order.
   std::span<const ContactEvent> contacts() const { return contacts_.begun(); }

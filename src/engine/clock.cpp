@@ -1,0 +1,45 @@
+// The clock's schedule.
+#include "engine/clock.h"
+
+#include <utility>
+
+namespace limber {
+
+namespace {
+using Seconds = std::chrono::duration<double>;
+
+Clock::Time after(Clock::Time t, double seconds) {
+  return t + std::chrono::duration_cast<std::chrono::steady_clock::duration>(Seconds(seconds));
+}
+}  // namespace
+
+void Clock::restart(Time now) {
+  due_ = now;
+  window_start_ = now;
+  window_seconds_ = 0;
+  started_ = true;
+}
+
+void Clock::tick(Time now, double tick_seconds, double speed) {
+  if (!started_) restart(now);
+  if (Seconds(now - due_).count() > 0.25) due_ = now;
+  due_ = after(due_, tick_seconds / speed);
+
+  window_seconds_ += tick_seconds;
+  const double real = Seconds(now - window_start_).count();
+  if (real < 0.5) return;
+  reached_ = (window_seconds_ - tick_seconds) / real;
+  if (reached_ < 0.95 * speed) {
+    late_seconds_ += real;
+    if (late_seconds_ >= 2 && !std::exchange(said_, true)) late_ = true;
+  } else {
+    late_seconds_ = 0;
+    said_ = false;
+  }
+  window_start_ = now;
+  window_seconds_ = tick_seconds;
+}
+
+bool Clock::take_late() { return std::exchange(late_, false); }
+
+}  // namespace limber

@@ -1,0 +1,118 @@
+// Engine: the simulation thread's loop. One tick: commands, scene callbacks, physics, snapshot; and pacing. It owns the
+// world and the scene; the outside sees only its EngineLink.
+#pragma once
+
+#include <atomic>
+#include <condition_variable>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <unordered_map>
+#include <vector>
+
+#include "engine/clock.h"
+#include "engine/dispatch.h"
+#include "engine/link.h"
+#include "engine/publish.h"
+#include "engine/transport.h"
+#include "script/scene.h"
+
+namespace limber {
+
+struct EngineOptions {
+  std::string scene;                   ///< File of the scene; empty: an empty world.
+  SceneOptions scene_options;          ///< Seed, package paths, installed data.
+  bool fast = false;                   ///< Ticks as fast as they can be computed, with the same result.
+  std::optional<std::uint64_t> ticks;  ///< Ends after so many; else runs until stop().
+  std::optional<double> duration;      ///< Ends at that simulated time, s.
+  std::vector<Message> sets;           ///< `--set`: the performer's hand before the first tick.
+};
+
+/// Seconds of the last tick, by phase (architecture.md, the tick).
+struct PhaseTimes {
+  double commands = 0;
+  double scripts = 0;
+  double effects = 0;
+  double physics = 0;
+  double readouts = 0;
+  double snapshot = 0;
+  double collector = 0;
+  double total() const { return commands + scripts + effects + physics + readouts + snapshot; }
+};
+
+class Engine : private ScriptHost {
+ public:
+  Engine(EngineLink& link, EngineOptions options);
+  ~Engine() override;
+  Engine(const Engine&) = delete;
+  Engine& operator=(const Engine&) = delete;
+
+  /// Runs the scene's file and the `sets`: what is wrong with either, with file and line. [sim]
+  Result<void> start();
+  /// Ticks until the end that the options name, or stop(). [sim]
+  void run();
+  /// One tick now, whatever the clock says; while paused only commands and handlers. [sim]
+  void tick();
+  /// Ends run() soon. [any]
+  void stop();
+
+  World& world() { return *world_; }
+  Store& store() { return store_; }
+  const PhaseTimes& times() const { return times_; }
+  /// World, scene and generators. [sim]
+  std::uint64_t state_hash() const;
+  /// Script errors and refused values so far, health events: what `--strict` asks for. [sim]
+  std::uint64_t faults() const { return faults_ + world_->health_events(); }
+
+ private:
+  void send(Message message) override;
+  void reply(const Origin& to, Message message) override;
+  void send_direct(const Origin& to, Message message) override;
+  void plan_osc(const OscPlan& plan) override;
+  void ask_reset() override;
+  void script_error(std::string_view file, int line, std::string_view text) override;
+
+  Result<void> run_scene();
+  void reset();
+  void drain();
+  void execute(const Message& message, const Origin& origin);
+  void remember(const Message& message);
+  void forget_empty_places();
+  void call_handlers();
+  void send_events();
+  void wait_until(Clock::Time due);
+  bool finished() const;
+  void push_out(Outgoing out);
+
+  EngineLink& link_;
+  EngineOptions options_;
+  Store store_;
+  std::unique_ptr<World> world_;
+  std::unique_ptr<Dispatch> dispatch_;
+  std::unique_ptr<Transport> transport_;
+  std::unique_ptr<CounterNode> counters_;
+  std::unique_ptr<Publisher> publisher_;
+  std::unique_ptr<Scene> scene_;
+  Clock clock_;
+  PhaseTimes times_;
+
+  struct Heard {
+    Message message;
+    Origin origin;
+    Outcome outcome;
+  };
+  std::vector<Command> commands_;
+  std::vector<Heard> heard_;        // messages of this tick, for the scene's handlers
+  std::vector<Message> performer_;  // the last value by hand for each address and names, in order
+  std::unordered_map<std::string, std::size_t> performer_at_;
+  std::uint64_t faults_ = 0;
+  bool was_paused_ = false;
+
+  std::atomic<bool> stop_{false};
+  std::mutex wake_mutex_;
+  std::condition_variable wake_;
+  bool woken_ = false;
+};
+
+}  // namespace limber

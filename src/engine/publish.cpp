@@ -1,0 +1,48 @@
+// Snapshots: a copy of the live block beside a roster that is shared while nobody comes or goes.
+#include "engine/publish.h"
+
+namespace limber {
+
+const LiveOffsets& live_offsets() {
+  static const auto joint = [](const char* name) { return Joint::table().at(name).offset; };
+  static const auto part = [](const char* name) { return Part::table().at(name).offset; };
+  static const LiveOffsets offsets{joint("position"), joint("rotation"), joint("relrot"),
+                                   joint("offsets"),  part("position"),  part("rotation")};
+  return offsets;
+}
+
+void Publisher::renew_roster() {
+  auto roster = std::make_shared<Roster>();
+  const StoreView& view = *world_.store().view();
+  const auto live_of = [&](NodeId id) { return view.slots[id.slot].live; };
+  roster->bodies.reserve(world_.bodies().size());
+  for (const auto& body : world_.bodies()) {
+    RosterBody& entry = roster->bodies.emplace_back();
+    entry.name = body->name();
+    entry.enabled_at = live_of(body->id()) + Body::table().at("enabled").offset;
+    for (const auto& joint : body->joints()) {
+      entry.joint_names.push_back(joint->name());
+      entry.joints.push_back(live_of(joint->id()));
+    }
+    for (const auto& part : body->parts()) entry.parts.push_back(live_of(part->id()));
+  }
+  roster_ = std::move(roster);
+}
+
+void Publisher::publish(bool paused, double speed_reached) {
+  if (roster_ == nullptr || structure_ != world_.store().structure_version()) {
+    renew_roster();
+    structure_ = world_.store().structure_version();
+  }
+  const std::shared_ptr<Snapshot> snapshot = out_.spare();
+  snapshot->tick = world_.tick();
+  snapshot->time = world_.time();
+  snapshot->paused = paused;
+  snapshot->speed = speed_reached;
+  snapshot->roster = roster_;
+  const std::span<const double> live = world_.store().live();
+  snapshot->live.assign(live.begin(), live.end());
+  out_.publish(snapshot);
+}
+
+}  // namespace limber

@@ -1,0 +1,100 @@
+// The rows of /transport and /osc.
+#include "engine/transport.h"
+
+#include <algorithm>
+
+namespace limber {
+
+namespace {
+
+using namespace rows;
+
+Row counter(std::string name, std::string doc) {
+  return live(readout(integer(std::move(name), 0, 0, kUnbounded, std::move(doc))));
+}
+
+}  // namespace
+
+const Table& Transport::table() {
+  static const Table table(
+      "transport", "/transport", "",
+      {
+          act<&Transport::act_play>(action("play", 0, 0, "Time runs.")),
+          act<&Transport::act_pause>(action("pause", 0, 0, "Time stands still.")),
+          act<&Transport::act_step>(action("step", 0, 1, "So many ticks (1), then stands still.")),
+          act<&Transport::act_reset>(action("reset", 0, 0, "The scene from its start, with the performer's values.")),
+          live(readout(number("speed_reached", "× real time", 1, 0, kUnbounded,
+                              "Simulated seconds per real second, over the last half second."))),
+      });
+  return table;
+}
+
+Transport::Transport(World& world)
+    : world_(world), id_(world.store().add(table(), world.store().root(), "transport", this)) {}
+
+bool Transport::paused() const { return world_.store().values(world_.id(), World::table().at("paused"))[0] != 0; }
+
+void Transport::set_paused(bool paused) {
+  const double value = paused ? 1 : 0;
+  (void)world_.store().set(world_.id(), World::table().at("paused"), {&value, 1});
+}
+
+bool Transport::take_step() {
+  if (steps_ == 0) return false;
+  steps_--;
+  return true;
+}
+
+void Transport::tell(double speed_reached) { world_.store().tell(id_, table().at("speed_reached"))[0] = speed_reached; }
+
+Result<void> Transport::act_play(std::span<const double>) {
+  steps_ = 0;
+  set_paused(false);
+  return {};
+}
+
+Result<void> Transport::act_pause(std::span<const double>) {
+  set_paused(true);
+  return {};
+}
+
+Result<void> Transport::act_step(std::span<const double> args) {
+  const double wanted = args.empty() ? 1 : args[0];
+  if (!(wanted >= 1 && wanted <= 100000)) return Error{"step takes 1 to 100000 ticks"};
+  steps_ = std::min(100000, steps_ + static_cast<int>(wanted));
+  set_paused(true);
+  return {};
+}
+
+Result<void> Transport::act_reset(std::span<const double>) {
+  world_.ask_reset();
+  return {};
+}
+
+const Table& CounterNode::table() {
+  static const Table table("osc", "/osc", "",
+                           {
+                               counter("received", "Messages that came in whole."),
+                               counter("malformed", "Datagrams that are no OSC."),
+                               counter("unknown", "Messages with an address that nobody answers."),
+                               counter("refused", "Messages refused for their arguments or names."),
+                               counter("clamped", "Messages with values outside their range."),
+                               counter("dropped", "Messages lost here: more came than a tick takes."),
+                               counter("dropped_kernel", "Datagrams lost by the kernel: its buffer was full."),
+                               counter("sent", "Datagrams sent."),
+                           });
+  return table;
+}
+
+CounterNode::CounterNode(Store& store, const Counters& counters)
+    : store_(store), counters_(counters), id_(store.add(table(), store.root(), "osc", this)) {}
+
+void CounterNode::tell() {
+  const std::atomic<std::uint64_t>* const all[] = {&counters_.received,       &counters_.malformed, &counters_.unknown,
+                                                   &counters_.refused,        &counters_.clamped,   &counters_.dropped,
+                                                   &counters_.dropped_kernel, &counters_.sent};
+  double* out = store_.live_block(id_);
+  for (const auto* count : all) *out++ = static_cast<double>(count->load(std::memory_order_relaxed));
+}
+
+}  // namespace limber
