@@ -44,7 +44,8 @@ def main():
     # a model or mesh that nothing makes any more would linger unseen
     lost = [p for p in [*HERE.glob("*.urdf"), *HERE.glob("meshes/*.stl")] if p not in files]
     for path in stale + lost:
-        verb = "is not made here: remove it" if path in lost else "differs: run urdf/make_models.py" if check else "written"
+        verb = "differs: run urdf/make_models.py" if check else "written"
+        verb = "is not made here: remove it" if path in lost else verb
         print(f"{path.relative_to(HERE.parent)}: {verb}")
     return 1 if check and (stale or lost) else 0
 

@@ -50,7 +50,8 @@ def base():
 
 def tip():
     """A small plate with a rounded pin: what points at things."""
-    profile = [(0, 0), (0.041, 0), (0.045, 0.004), (0.045, 0.016)] + arc(0.041, 0.016, 0.004, math.pi / 4, math.pi / 2, 1)
+    profile = [(0, 0), (0.041, 0), (0.045, 0.004), (0.045, 0.016)]
+    profile += arc(0.041, 0.016, 0.004, math.pi / 4, math.pi / 2, 1)
     profile += [(0.03, 0.02), (0.026, 0.026)]
     return lathe(profile + arc(0, TIP - 0.02, 0.02, 0, math.pi / 2, 6))
 

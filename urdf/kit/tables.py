@@ -51,7 +51,8 @@ def summary(robot):
     moving = [joint for joint in robot.joints if joint.kind != "fixed"]
     root = robot.links[0]
     feet = f"fixed to the world by `{root.name}`" if not root.mass else f"free; `{root.name}` floats"
-    lines = ["| | |", "|---|---|", f"| links, moving joints | {len(robot.links)}, {len(moving)} |", f"| root | {feet} |"]
+    lines = ["| | |", "|---|---|", f"| links, moving joints | {len(robot.links)}, {len(moving)} |"]
+    lines += [f"| root | {feet} |"]
     lines += [f"| mass | {sum(link.mass for link in robot.links):.2f} kg |"]
     lines += [f"| size at home, x × y × z | {size} m |"]
     if root.mass:
