@@ -1,7 +1,6 @@
 // The way of a URDF file: bytes, clean text, checked file, tree, urdfdom's second opinion, meshes, body.
 #include "model/urdf_import.h"
 
-#include <algorithm>
 #include <exception>
 #include <filesystem>
 #include <map>
@@ -49,10 +48,11 @@ class MeshStep {
     if (!mesh) {
       // the last sentence of an error is its cure
       const std::string& text = mesh.error();
-      const std::size_t cure = std::min(text.rfind(". ") + 1, text.size());
+      const std::size_t end = text.rfind(". ");
+      const bool parted = end != std::string::npos;
       problems_.error(shape.line,
-                      fmt::format("link '{}': {} mesh left out: {}", printable(link), kind, text.substr(0, cure)),
-                      text.substr(std::min(cure + 1, text.size())));
+                      fmt::format("link '{}': {} mesh left out: {}", printable(link), kind, text.substr(0, end)),
+                      parted ? text.substr(end + 2) : "Mend the mesh file.");
       return false;
     }
     shape.shape.mesh = *mesh;

@@ -48,9 +48,8 @@ Mat3 ball_tensor(double mass) {
 Inertial derived(Inertial shapes) {
   Inertial out = scaled(shapes, kDensity);
   if (out.mass >= kLeastMass) return out;
-  const double least = kLeastMass;
-  out = shapes.mass > 0 ? scaled(shapes, least / shapes.mass) : Inertial{least, Vec3(0), ball_tensor(least)};
-  return out;
+  return shapes.mass > 0 ? scaled(shapes, kLeastMass / shapes.mass)
+                         : Inertial{kLeastMass, Vec3(0), ball_tensor(kLeastMass)};
 }
 
 /// What the file says of one link with a mass, in the link's frame, its tensor made possible.
@@ -122,8 +121,9 @@ class Masses {
         link.inertial = {};
       } else {
         if (i == 0 && !root_has_mass_) add_root_mass(link);
-        if (link.inertial.mass <= 0) derive(link, lines_[i]);
-        settle(link, lines_[i]);
+        const bool derived = link.inertial.mass <= 0;
+        if (derived) derive(link, lines_[i]);
+        settle(link, lines_[i], derived);
         drop_planes(build_, link, lines_[i]);
       }
       if (link.collisions.empty() && link.visuals.empty()) {
@@ -149,24 +149,23 @@ class Masses {
 
   void derive(LinkModel& link, int line) {
     link.inertial = derived(shapes_of(link.collisions, link.visuals));
-    build_.problems.warning(
-        line,
-        fmt::format("link '{}' moves but has no mass; {:.4g} kg are taken from its {}", printable(link.name),
-                    link.inertial.mass,
-                    link.collisions.empty() && link.visuals.empty() ? "being there" : "shape's volume"),
-        "Write an <inertial> with mass and inertia.");
+    const bool shapeless = link.collisions.empty() && link.visuals.empty();
+    build_.problems.warning(line,
+                            fmt::format("link '{}' moves but has no mass; {:.4g} kg are taken{}", printable(link.name),
+                                        link.inertial.mass, shapeless ? "" : " from its shape's volume"),
+                            "Write an <inertial> with mass and inertia.");
   }
 
-  void settle(LinkModel& link, int line) {
+  void settle(LinkModel& link, int line, bool derived) {
     bool raised = false;
     if (!tensor_fault(link.inertial.tensor).empty()) link.inertial.tensor = ball_tensor(link.inertial.mass);
     link.inertial.tensor = solvable_tensor(link.inertial.tensor, raised);
-    if (!raised) return;
+    if (!raised || derived) return;
     build_.problems.note(
         line,
         fmt::format("link '{}': its inertia is too small about an axis for a steady simulation; raised",
                     printable(link.name)),
-        "Nothing to do; a tensor of at least 1e-6 kg·m², its axes within 1 to 1000, is used as it is.");
+        "Nothing to do; moments of at least 1e-6 kg·m² and a thousandth of the largest are used as they are.");
   }
 
   UrdfBuild& build_;

@@ -59,7 +59,11 @@ NumberText read_number(std::string_view text) {
   return {value, "", ""};
 }
 
+/// Spellings that urdfdom or its like refuse: "+1", ".5", "5.", blanks at the ends, tabs between.
 bool is_odd(std::string_view text) {
+  if (kBlanks.find(text.front()) != std::string_view::npos || kBlanks.find(text.back()) != std::string_view::npos) {
+    return true;
+  }
   const char last = text.back();
   const std::string_view digits = text.front() == '-' ? text.substr(1) : text;
   return text.front() == '+' || last == '.' || (!digits.empty() && digits.front() == '.');
@@ -105,9 +109,9 @@ std::optional<double> UrdfReader::one_number(std::string_view text, int line, co
                    fmt::format("Write a number {}.", range.text));
     return std::nullopt;
   }
-  if (is_odd(digits) && odd_numbers_++ == 0) {
+  if (is_odd(text) && odd_numbers_++ == 0) {
     odd_line_ = line;
-    odd_text_ = shown(digits);
+    odd_text_ = shown(text);
   }
   return read.value;
 }
@@ -137,6 +141,10 @@ std::optional<Vec3> UrdfReader::vector(const Element& element, const char* attri
       out[count] = *value;
     }
     at = text.find_first_not_of(kBlanks, end);
+  }
+  if (count == 3 && text.find_first_of("\t\r\n") != std::string_view::npos && odd_numbers_++ == 0) {
+    odd_line_ = found->GetLineNum();
+    odd_text_ = shown(text);
   }
   if (count == 3) return out;
   problems.error(found->GetLineNum(),
@@ -185,7 +193,7 @@ void UrdfReader::finish() {
       odd_line_,
       fmt::format("{} number(s) are spelled in a way that some readers refuse, the first is '{}'; they were read",
                   odd_numbers_, odd_text_),
-      "Write digits on both sides of the point and no '+': 0.5, 5.0, 1.");
+      "Write digits on both sides of the point, no '+', and single blanks between numbers only: 0.5, 5.0, 1.");
 }
 
 }  // namespace limber

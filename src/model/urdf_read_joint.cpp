@@ -37,6 +37,8 @@ bool is_hinge_or_slide(JointType type) {
   return type == JointType::revolute || type == JointType::continuous || type == JointType::prismatic;
 }
 
+const char* or_continuous(JointType type) { return type == JointType::revolute ? ", or use type continuous." : "."; }
+
 }  // namespace
 
 std::string_view joint_type_name(JointType type) {
@@ -130,7 +132,7 @@ void UrdfReader::limit(const Element& element, const std::string& owner, UrdfJoi
   if (!found) {
     if (out.type == JointType::continuous) return;
     problems.warning(element.GetLineNum(), fmt::format("{} has no <limit>; it is free", owner),
-                     "Write <limit lower= upper= effort= velocity=/>, or use type continuous.");
+                     fmt::format("Write <limit lower= upper= effort= velocity=/>{}", or_continuous(out.type)));
     return;
   }
   out.effort = number(*found, "effort", owner, kForceRange).value_or(0);
@@ -148,7 +150,7 @@ void UrdfReader::bounds(const Element& limit, const std::string& owner, UrdfJoin
   const bool has_upper = limit.Attribute("upper");
   if (!has_lower && !has_upper) {
     problems.note(line, fmt::format("{}: <limit> has neither lower nor upper; it is free", owner),
-                  "Write lower= and upper=, or use type continuous.");
+                  fmt::format("Write lower= and upper={}", or_continuous(out.type)));
     return;
   }
   const std::optional<double> lower = number(limit, "lower", owner, kBoundRange);
@@ -167,10 +169,10 @@ void UrdfReader::bounds(const Element& limit, const std::string& owner, UrdfJoin
   if (out.lower > out.upper) {
     problems.warning(line,
                      fmt::format("{}: lower {:.6g} is above upper {:.6g}; it is free", owner, out.lower, out.upper),
-                     "Exchange lower and upper, or use type continuous.");
+                     fmt::format("Exchange lower and upper{}", or_continuous(out.type)));
   } else if (out.lower < -kNoBound && out.upper > kNoBound) {
     problems.note(line, fmt::format("{}: limits beyond {:g} mean none; it is free", owner, kNoBound),
-                  "Use type continuous.");
+                  fmt::format("Leave lower and upper out{}", or_continuous(out.type)));
   } else {
     out.limited = true;
     out.lower = std::clamp(out.lower, -kNoBound, kNoBound);

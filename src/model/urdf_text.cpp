@@ -1,7 +1,6 @@
 // Cleans a URDF's bytes: encoding, NUL, declarations, depth, and what follows the root element.
 #include "model/urdf_text.h"
 
-#include <algorithm>
 #include <filesystem>
 #include <fstream>
 #include <system_error>
@@ -9,14 +8,11 @@
 #include <fmt/format.h>
 
 #include "base/text.h"
+#include "model/urdf_markup.h"
 
 namespace limber {
 
 namespace {
-
-int line_of(std::string_view text, std::size_t at) {
-  return 1 + static_cast<int>(std::count(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(at), '\n'));
-}
 
 /// Length of the UTF-8 sequence that starts at `at`, or 0 when it is none (overlong, surrogate, cut off).
 std::size_t utf8_length(std::string_view text, std::size_t at) {
@@ -76,129 +72,6 @@ void drop_control_characters(std::string& text, Problems& problems) {
   }
 }
 
-/// Walks over the mark-up and blanks what must not reach a parser.
-class Scanner {
- public:
-  Scanner(std::string& text, Problems& problems) : text_(text), problems_(problems) {}
-
-  /// Whether there was any element.
-  bool run() {
-    while (at_ < text_.size()) {
-      const std::size_t open = text_.find('<', at_);
-      if (open == std::string::npos) break;
-      at_ = open;
-      if (starts("<!--")) {
-        skip_past("-->");
-      } else if (starts("<![CDATA[")) {
-        skip_past("]]>");
-      } else if (starts("<?")) {
-        skip_past("?>");
-        blank(open, at_);
-      } else if (starts("<!")) {
-        skip_declaration();
-        blank(open, at_);
-        say_declaration(open);
-      } else if (tag(open)) {
-        break;
-      }
-    }
-    finish();
-    return any_;
-  }
-
- private:
-  bool starts(std::string_view what) const { return std::string_view(text_).substr(at_, what.size()) == what; }
-  void skip_past(std::string_view what) {
-    const std::size_t found = text_.find(what, at_);
-    at_ = found == std::string::npos ? text_.size() : found + what.size();
-  }
-  void blank(std::size_t from, std::size_t to) {
-    for (std::size_t i = from; i < to; ++i) {
-      if (text_[i] != '\n') text_[i] = ' ';
-    }
-  }
-  /// To behind the declaration's '>', an internal subset in brackets and quoted text included.
-  void skip_declaration() {
-    char quote = 0;
-    bool subset = false;
-    for (; at_ < text_.size(); ++at_) {
-      const char c = text_[at_];
-      if (quote != 0) {
-        quote = c == quote ? '\0' : quote;
-      } else if (c == '"' || c == '\'') {
-        quote = c;
-      } else if (c == '[' || c == ']') {
-        subset = c == '[';
-      } else if (c == '>' && !subset) {
-        ++at_;
-        return;
-      }
-    }
-  }
-  void say_declaration(std::size_t open) {
-    if (declaration_said_) return;
-    declaration_said_ = true;
-    problems_.error(line_of(text_, open), "a DOCTYPE is not read: it could pull in other files; left out",
-                    "Take the DOCTYPE out and write what its entities stand for.");
-  }
-  /// One start or end tag at `open`; true when it ends the first element.
-  bool tag(std::size_t open) {
-    const bool closing = starts("</");
-    char quote = 0;
-    std::size_t i = open + 1;
-    for (; i < text_.size() && (quote != 0 || text_[i] != '>'); ++i) {
-      if (quote != 0) {
-        quote = text_[i] == quote ? '\0' : quote;
-      } else if (text_[i] == '"' || text_[i] == '\'') {
-        quote = text_[i];
-      }
-    }
-    const bool empty = !closing && i > open + 1 && i < text_.size() && text_[i - 1] == '/';
-    at_ = std::min(i + 1, text_.size());
-    any_ = true;
-    depth_ += closing ? -1 : (empty ? 0 : 1);
-    if (!closing && depth_ + (empty ? 1 : 0) > kMostUrdfDepth && deep_from_ == std::string::npos) {
-      deep_from_ = open;
-      deep_depth_ = depth_ - (empty ? 0 : 1);
-    }
-    if (deep_from_ != std::string::npos && depth_ <= deep_depth_ && (closing || empty)) cut_deep();
-    return depth_ <= 0;
-  }
-  void cut_deep() {
-    if (!deep_said_) {
-      problems_.error(
-          line_of(text_, deep_from_),
-          fmt::format("elements are nested more than {} deep; the deeper ones are left out", kMostUrdfDepth),
-          "A URDF needs no more than six levels: take the nesting out.");
-    }
-    deep_said_ = true;
-    blank(deep_from_, at_);
-    deep_from_ = std::string::npos;
-  }
-  void finish() {
-    if (deep_from_ != std::string::npos) {
-      at_ = text_.size();
-      cut_deep();
-    }
-    const std::size_t more = text_.find_first_not_of(" \t\r\n", at_);
-    if (more != std::string::npos && text_.compare(more, 4, "<!--") != 0) {
-      problems_.warning(line_of(text_, more), "what follows the end of the first element is not read",
-                        "One file holds one robot: take the rest out.");
-    }
-    text_.resize(at_);
-  }
-
-  std::string& text_;
-  Problems& problems_;
-  std::size_t at_ = 0;
-  std::size_t deep_from_ = std::string::npos;
-  int depth_ = 0;
-  int deep_depth_ = 0;
-  bool deep_said_ = false;
-  bool declaration_said_ = false;
-  bool any_ = false;
-};
-
 }  // namespace
 
 Result<std::string> read_whole_file(const std::string& path, std::size_t most) {
@@ -241,7 +114,7 @@ Result<std::string> clean_urdf_text(std::string_view bytes, Problems& problems) 
   if (text.find_first_not_of(" \t\r\n") == std::string::npos) {
     return Error{"is empty. Give a file with a <robot> element."};
   }
-  if (!Scanner(text, problems).run()) return Error{"holds no XML element. Give a file with a <robot> element."};
+  if (!clean_markup(text, problems)) return Error{"holds no XML element. Give a file with a <robot> element."};
   return text;
 }
 

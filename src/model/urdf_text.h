@@ -11,12 +11,12 @@
 namespace limber {
 
 inline constexpr std::size_t kMostUrdfBytes = 32u << 20;
-inline constexpr int kMostUrdfDepth = 100;
+inline constexpr int kMostUrdfDepth = 64;
 
 /// The whole of a regular file of at most `most` bytes; the error names the file and the cure. [any]
 Result<std::string> read_whole_file(const std::string& path, std::size_t most);
 
-/// Valid UTF-8 without NUL, DOCTYPE, processing instructions, elements nested deeper than 100 and anything after the
+/// Valid UTF-8 without NUL, DOCTYPE, processing instructions, elements nested deeper than 64 and anything after the
 /// first element's end; what was taken out or converted is said in `problems`. An error when there is no XML at all.
 /// [any]
 Result<std::string> clean_urdf_text(std::string_view bytes, Problems& problems);

@@ -1,0 +1,56 @@
+// The store of imported bodies.
+#include "model/model_library.h"
+
+#include <filesystem>
+#include <system_error>
+
+#include <fmt/format.h>
+
+namespace limber {
+
+namespace {
+
+/// Everything that makes two imports the same, in one text.
+std::string key_of(const std::string& path, const ImportOptions& options) {
+  std::error_code fault;
+  const std::filesystem::path whole = std::filesystem::weakly_canonical(path, fault);
+  std::string key = fault ? path : whole.string();
+  key += fmt::format("|{}|{}", options.fixed_base ? (*options.fixed_base ? "fixed" : "free") : "", options.keep_fixed);
+  for (const auto& [name, value] : options.pose) key += fmt::format("|{}:{}={:a}", name.size(), name, value);
+  for (const std::string& folder : options.package_paths) key += fmt::format("|{}:{}", folder.size(), folder);
+  return key;
+}
+
+}  // namespace
+
+bool ModelLibrary::is_fresh(const Entry& entry) {
+  for (std::size_t i = 0; i < entry.stamps.size(); ++i) {
+    if (!(stamp_of(entry.model->files[i]) == entry.stamps[i])) return false;
+  }
+  return true;
+}
+
+Result<std::shared_ptr<const BodyModel>> ModelLibrary::load_urdf(const std::string& path,
+                                                                 const ImportOptions& options) {
+  const std::string key = key_of(path, options);
+  {
+    const std::lock_guard lock(mutex_);
+    const auto found = models_.find(key);
+    if (found != models_.end() && is_fresh(found->second)) return found->second.model;
+  }
+  // imported without the lock, which other threads may need meanwhile; the URDF's stamp is taken first, so that a
+  // change during the import is seen the next time
+  const FileStamp before = stamp_of(path);
+  const Result<std::shared_ptr<const BodyModel>> model = import_urdf(path, options, meshes_);
+  if (!model) return model;
+  Entry entry{*model, {}};
+  for (const std::string& file : (*model)->files) entry.stamps.push_back(stamp_of(file));
+  entry.stamps.front() = before;
+  const std::lock_guard lock(mutex_);
+  Entry& kept = models_[key];
+  // two threads may have imported the same file: the first one's model stays
+  if (!kept.model || kept.stamps != entry.stamps) kept = std::move(entry);
+  return kept.model;
+}
+
+}  // namespace limber

@@ -1,0 +1,39 @@
+// Keeps imported bodies: the same file with the same options twice is one shared, immutable model.
+#pragma once
+
+#include <map>
+#include <memory>
+#include <mutex>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "base/result.h"
+#include "model/body_model.h"
+#include "model/mesh_library.h"
+#include "model/urdf_import.h"
+
+namespace limber {
+
+/// Models by file and options. A model is imported anew when its URDF or one of its meshes has changed on disk; who
+/// holds the old one keeps it. [any]
+class ModelLibrary {
+ public:
+  Result<std::shared_ptr<const BodyModel>> load_urdf(const std::string& path, const ImportOptions& options = {});
+  /// The meshes that the models share.
+  MeshLibrary& meshes() { return meshes_; }
+
+ private:
+  struct Entry {
+    std::shared_ptr<const BodyModel> model;
+    std::vector<FileStamp> stamps;  ///< Of BodyModel::files, in order.
+  };
+
+  static bool is_fresh(const Entry& entry);
+
+  std::mutex mutex_;
+  MeshLibrary meshes_;
+  std::map<std::string, Entry> models_;
+};
+
+}  // namespace limber
