@@ -22,6 +22,18 @@ double reach(const AxisSettings& s) {
   return std::max(std::fabs(static_cast<double>(s.lower)), std::fabs(static_cast<double>(s.upper)));
 }
 
+// Finite, and small enough that no square of it overflows.
+float tamed(float v, float least, float most) { return v >= least ? std::min(v, most) : least; }
+
+AxisSettings tamed(AxisSettings s) {
+  for (float* position : {&s.lower, &s.upper, &s.target, &s.rest}) *position = tamed(*position, -1e6f, 1e6f);
+  for (float* size : {&s.max_force, &s.stiffness, &s.spring_damping, &s.friction}) *size = tamed(*size, 0, 1e12f);
+  s.velocity = tamed(s.velocity, -1e5f, 1e5f);
+  s.stop_erp = tamed(s.stop_erp, 0, 1);
+  s.stop_cfm = tamed(s.stop_cfm, 0, 1e6f);
+  return s;
+}
+
 }  // namespace
 
 JointConstraint::JointConstraint(btRigidBody& parent, btRigidBody& child, const btTransform& frame_in_parent,
@@ -32,9 +44,10 @@ JointConstraint::JointConstraint(btRigidBody& parent, btRigidBody& child, const 
 
 void JointConstraint::set_axis(int axis, const AxisSettings& settings) {
   AxisSettings& mine = axes_[at(axis)];
-  const bool new_range = mine.lower != settings.lower || mine.upper != settings.upper;
-  mine = settings;
-  if (!new_range) return;
+  const float lower = mine.lower;
+  const float upper = mine.upper;
+  mine = tamed(settings);
+  if (mine.lower == lower && mine.upper == upper) return;
   const int middle = middle_;
   choose_order();
   read_pose(middle != middle_);
@@ -56,6 +69,7 @@ void JointConstraint::set_frames(const btTransform& frame_in_parent, const btTra
 void JointConstraint::reset(const Vec3& near) {
   angle_ = {near.x, near.y, near.z};
   motor_impulse_.fill(0);
+  repair_impulse_.fill(0);
   tick_impulse_.fill(0);
   applied_.fill(0);
   learnt_inertia_.fill(0);

@@ -2,6 +2,7 @@
 // writes its own solver rows, so that all a user sees is right-handed, child relative to parent, mirrored nowhere.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 
@@ -50,7 +51,8 @@ class JointConstraint : public btTypedConstraint {
   JointConstraint(btRigidBody& parent, btRigidBody& child, const btTransform& frame_in_parent,
                   const btTransform& frame_in_child);
 
-  /// Takes effect at the next internal step. A free axis that becomes limited takes the turn nearest to its range.
+  /// Takes effect at the next internal step; absurd numbers are tamed (positions to 1e6, speeds to 1e5, forces to
+  /// 1e12). A free axis that becomes limited takes the turn nearest to its range.
   void set_axis(int axis, const AxisSettings& settings);
   const AxisSettings& axis(int axis) const { return axes_[static_cast<std::size_t>(axis)]; }
   /// Moves the frames (centre-of-mass frames), keeping turns where it can.
@@ -58,9 +60,9 @@ class JointConstraint : public btTypedConstraint {
   const btTransform& frame_in_parent() const { return frame_a_; }
   const btTransform& frame_in_child() const { return frame_b_; }
   /// 0 .. 1: a limit met at speed w is left at -bounce·w.
-  void set_bounce(double bounce) { bounce_ = to_scalar(bounce); }
+  void set_bounce(double bounce) { bounce_ = to_scalar(std::clamp(bounce, 0.0, 1.0)); }
   /// Passive damping of every axis that is not locked, in any mode: N·s/m and N·m·s/rad, >= 0, any value is stable.
-  void set_damping(double damping) { damping_ = to_scalar(damping); }
+  void set_damping(double damping) { damping_ = to_scalar(std::clamp(damping, 0.0, 1e12)); }
 
   /// Call after a part was moved by hand: reads the pose anew, with the turns nearest to `near` (rad, own order; 0:
   /// outer and inner angle within ±pi, middle within ±pi/2), and forgets what servos learnt and motors applied.
@@ -115,6 +117,7 @@ class JointConstraint : public btTypedConstraint {
   static constexpr btTypedConstraintType kType = MAX_CONSTRAINT_TYPE;
 
  private:
+  enum class RowKind : std::uint8_t { plain, motor, repair };  // motor: counts as applied; repair: of a limit passed
   // One row to come: rate + softness·impulse = velocity, impulse within [lower, upper].
   struct Row {
     btScalar velocity;
@@ -122,7 +125,7 @@ class JointConstraint : public btTypedConstraint {
     btScalar lower;
     btScalar upper;
     std::uint8_t axis;
-    bool motor;  // counts as applied force
+    RowKind kind;
   };
   static constexpr int kMaxRows = 30;  // per axis: motor, damping, friction, two limits
 
@@ -149,7 +152,8 @@ class JointConstraint : public btTypedConstraint {
   btScalar servo_velocity(int axis);
   void learn_inertia(int axis);
   btScalar capped_stiffness(int axis) const;
-  void add_row(int axis, btScalar velocity, btScalar softness, btScalar lower, btScalar upper, bool motor = false);
+  void add_row(int axis, btScalar velocity, btScalar softness, btScalar lower, btScalar upper,
+               RowKind kind = RowKind::plain);
 
   btTransform frame_a_;
   btTransform frame_b_;
@@ -162,8 +166,9 @@ class JointConstraint : public btTypedConstraint {
   std::array<float, 3> offset_{};
   std::array<float, 6> rate_{};
   std::array<float, 6> previous_rate_{};
-  std::array<float, 6> motor_impulse_{};  // of the last internal step
-  std::array<float, 6> tick_impulse_{};   // of the tick so far
+  std::array<float, 6> motor_impulse_{};   // of the last internal step
+  std::array<float, 6> repair_impulse_{};  // of the last internal step, on a limit that was passed
+  std::array<float, 6> tick_impulse_{};    // of the tick so far
   std::array<float, 6> applied_{};
   std::array<float, 6> learnt_inertia_{};
   std::array<float, 6> pair_inertia_{};

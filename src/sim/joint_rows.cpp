@@ -19,17 +19,12 @@ constexpr btScalar kServoGain = btScalar(0.9);
 constexpr btScalar kEagerServoGain = btScalar(0.25);
 /// Part of max_force that braking counts on; the rest is left to gravity and neighbours.
 constexpr btScalar kBrakePart = btScalar(0.7);
-/// Impulses stay below this, so that no finite input becomes infinite.
-constexpr btScalar kLargestImpulse = btScalar(1e15);
 
 std::size_t at(int i) { return static_cast<std::size_t>(i); }
 btScalar margin(int axis) { return axis < 3 ? kLinearMargin : kAngularMargin; }
-btScalar bounded(btScalar impulse) { return std::clamp(impulse, -kLargestImpulse, kLargestImpulse); }
 
 // Compliance (per load, at rest) as softness (per impulse): the solver repairs erp/h of the error per second.
-btScalar softness(const AxisSettings& s, btScalar h) {
-  return std::max(s.stop_cfm, btScalar(0)) * s.stop_erp / (h * h);
-}
+btScalar softness(const AxisSettings& s, btScalar h) { return s.stop_cfm * s.stop_erp / (h * h); }
 
 }  // namespace
 
@@ -66,8 +61,9 @@ void JointConstraint::getInfo2(btConstraintInfo2* info) {
 void JointConstraint::take_impulses(const btSolverConstraint* rows, int count) {
   for (int r = 0; r < count && r < row_count_; ++r) {
     const Row& row = rows_[at(r)];
-    if (!row.motor) continue;
     const btScalar impulse = rows[r].m_appliedImpulse;
+    if (row.kind == RowKind::repair) repair_impulse_[row.axis] = std::fabs(impulse);
+    if (row.kind != RowKind::motor) continue;
     motor_impulse_[row.axis] = impulse;
     tick_impulse_[row.axis] += impulse;
     if (row.softness == 0) pair_inertia_[row.axis] = rows[r].m_jacDiagABInv;
@@ -89,12 +85,14 @@ void JointConstraint::plan_rows() {
     if (axes_[at(axis)].locked()) plan_lock(axis);
   }
   motor_impulse_.fill(0);
+  repair_impulse_.fill(0);
   previous_rate_ = rate_;
 }
 
-void JointConstraint::add_row(int axis, btScalar velocity, btScalar soft, btScalar lower, btScalar upper, bool motor) {
+void JointConstraint::add_row(int axis, btScalar velocity, btScalar soft, btScalar lower, btScalar upper,
+                              RowKind kind) {
   if (row_count_ == kMaxRows) return;
-  rows_[at(row_count_++)] = {velocity, soft, lower, upper, static_cast<std::uint8_t>(axis), motor};
+  rows_[at(row_count_++)] = {velocity, soft, lower, upper, static_cast<std::uint8_t>(axis), kind};
 }
 
 void JointConstraint::plan_lock(int axis) {
@@ -116,7 +114,7 @@ void JointConstraint::plan_motion(int axis) {
   }
   if (damping_ > 0) add_row(axis, 0, 1 / std::max(damping_ * h_, btScalar(1e-18)), -kInfinity, kInfinity);
   if (s.friction > 0) {
-    const btScalar most = bounded(s.friction * h_);
+    const btScalar most = s.friction * h_;
     add_row(axis, 0, 0, -most, most);
   }
   if (s.limited()) {
@@ -136,18 +134,31 @@ void JointConstraint::plan_limit(int axis, bool upper) {
 
   const btScalar soft = softness(s, h_);
   btScalar least = -room / h_;
-  if (room < 0) least = soft == 0 ? std::min(least * s.stop_erp, kFastestRepair) : least * s.stop_erp;
-  if (room + h_ * speed <= 0) least = std::max(least, -bounce_ * speed);
+  btScalar pull = 0;
+  RowKind kind = RowKind::plain;
+  if (room < 0) {
+    least *= s.stop_erp;
+    // a limit pushes only; but what it pushed to repair itself it takes back, else the repair would throw the axis off
+    if (soft == 0) {
+      least = std::min(least, kFastestRepair);
+      pull = repair_impulse_[at(axis)];
+      kind = RowKind::repair;
+    }
+  }
+  if (bounce_ > 0 && room + h_ * speed <= 0 && -bounce_ * speed > least) {
+    least = -bounce_ * speed;
+    kind = RowKind::plain;
+  }
   if (upper) {
-    add_row(axis, -least, soft, -kInfinity, 0);
+    add_row(axis, -least, soft, -kInfinity, pull, kind);
   } else {
-    add_row(axis, least, soft, 0, kInfinity);
+    add_row(axis, least, soft, -pull, kInfinity, kind);
   }
 }
 
 void JointConstraint::plan_motor(int axis) {
   const AxisSettings& s = axes_[at(axis)];
-  const btScalar most = bounded(std::max(s.max_force, btScalar(0)) * h_);
+  const btScalar most = s.max_force * h_;
   btScalar velocity = s.velocity;
   if (s.drive == AxisDrive::servo) {
     velocity = servo_velocity(axis);
@@ -158,7 +169,7 @@ void JointConstraint::plan_motor(int axis) {
     const btScalar down = std::min(static_cast<btScalar>(static_cast<double>(s.lower) - x), btScalar(0)) / h_;
     velocity = std::clamp(velocity, down, up);
   }
-  add_row(axis, velocity, 0, -most, most, true);
+  add_row(axis, velocity, 0, -most, most, RowKind::motor);
 }
 
 btScalar JointConstraint::servo_velocity(int axis) {
@@ -171,10 +182,14 @@ btScalar JointConstraint::servo_velocity(int axis) {
   btScalar speed = way / h_ * (limit > 0 ? kServoGain : kEagerServoGain);
   if (limit > 0) speed = std::min(speed, limit);
 
-  // never faster than the force can brake within the way that is left: v² = 2·a·way
+  // never faster than the force can brake within the way that is left after this step: v² = 2·a·(way - v·h)
   learn_inertia(axis);
   const btScalar inertia = learnt_inertia_[at(axis)];
-  if (inertia > 0) speed = std::min(speed, std::sqrt(2 * kBrakePart * std::max(s.max_force, 0.0f) / inertia * way));
+  if (inertia > 0 && s.max_force > 0) {
+    const btScalar slowing = kBrakePart * s.max_force / inertia * h_;
+    const btScalar whole = 2 * way / h_;
+    speed = std::min(speed, slowing * whole / (slowing + std::sqrt(slowing * (slowing + whole))));
+  }
   return error < 0 ? -speed : speed;
 }
 
@@ -182,9 +197,10 @@ btScalar JointConstraint::servo_velocity(int axis) {
 void JointConstraint::learn_inertia(int axis) {
   const std::size_t i = at(axis);
   const float pair = pair_inertia_[i];
-  float inertia = std::max(learnt_inertia_[i] * 0.995f, pair);
   const float impulse = motor_impulse_[i];
   const float gained = rate_[i] - previous_rate_[i];
+  // what was learnt fades, in a second or so, but never on the way to a stop that was planned with it
+  float inertia = std::max(learnt_inertia_[i] * (impulse * rate_[i] < 0 ? 1.0f : 0.995f), pair);
   const bool saturated = std::fabs(impulse) >= 0.98f * axes_[i].max_force * h_;
   if (saturated && impulse * gained > 0 && std::fabs(rate_[i]) > 1e-3f) {
     const float measured = std::min(impulse / gained, 2000 * pair);
@@ -199,17 +215,17 @@ void JointConstraint::plan_spring(int axis) {
   const btScalar stiffness = capped_stiffness(axis);
   stiffness_applied_[at(axis)] = stiffness;
   const btScalar stretch = static_cast<btScalar>(static_cast<double>(s.rest) - value(axis));
-  const btScalar impulse = bounded(stiffness * stretch * h_);
+  const btScalar impulse = stiffness * stretch * h_;
   if (s.spring_damping > 0) {
     const btScalar soft = 1 / std::max(s.spring_damping * h_, btScalar(1e-18));
-    add_row(axis, impulse * soft, soft, -kInfinity, kInfinity, true);
+    add_row(axis, impulse * soft, soft, -kInfinity, kInfinity, RowKind::motor);
   } else if (stiffness > 0) {
-    add_row(axis, 0, 0, impulse, impulse, true);
+    add_row(axis, 0, 0, impulse, impulse, RowKind::motor);
   }
 }
 
 btScalar JointConstraint::capped_stiffness(int axis) const {
-  const btScalar wanted = std::max(axes_[at(axis)].stiffness, btScalar(0));
+  const btScalar wanted = axes_[at(axis)].stiffness;
   const btScalar h2 = 16 * h_ * h_;
   // two free parts move more easily than parts held together: where they allow it, the joint does
   const Jacobian j = jacobian(axis);
