@@ -113,6 +113,7 @@ void Engine::run() {
 }
 
 bool Engine::finished() const {
+  if (options_.strict && faults() > 0) return true;
   if (options_.ticks && world_->tick() >= *options_.ticks) return true;
   return options_.duration && world_->time() >= *options_.duration - 1e-9;
 }

@@ -26,6 +26,7 @@ struct EngineOptions {
   bool fast = false;                   ///< Ticks as fast as they can be computed, with the same result.
   std::optional<std::uint64_t> ticks;  ///< Ends after so many; else runs until stop().
   std::optional<double> duration;      ///< Ends at that simulated time, s.
+  bool strict = false;                 ///< Ends at the first fault.
   std::vector<Message> sets;           ///< `--set`: the performer's hand before the first tick.
 };
 

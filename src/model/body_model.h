@@ -6,6 +6,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "base/vec.h"
@@ -70,6 +71,9 @@ struct LinkModel {
 };
 
 enum class JointType { fixed, revolute, continuous, prismatic, planar, floating, spherical };
+/// "revolute", as URDF and scenes spell it; and back, by the one naming rule. [any]
+std::string_view joint_type_name(JointType type);
+std::optional<JointType> joint_type_named(std::string_view name);
 
 struct JointModel {
   std::string name;

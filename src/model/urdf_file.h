@@ -75,7 +75,4 @@ struct UrdfFile {
   std::vector<UrdfJoint> joints;
 };
 
-/// "revolute", as URDF spells it.
-std::string_view joint_type_name(JointType type);
-
 }  // namespace limber

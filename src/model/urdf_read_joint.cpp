@@ -41,13 +41,6 @@ const char* or_continuous(JointType type) { return type == JointType::revolute ?
 
 }  // namespace
 
-std::string_view joint_type_name(JointType type) {
-  for (const TypeName& known : kTypeNames) {
-    if (known.type == type) return known.name;
-  }
-  return "spherical";
-}
-
 std::optional<UrdfJoint> UrdfReader::joint(const Element& element, const std::string& name) {
   UrdfJoint out;
   out.name = name;

@@ -3,7 +3,6 @@
 
 #include <array>
 
-#include "base/text.h"
 #include "sim/body.h"
 #include "sim/world.h"
 
@@ -12,9 +11,6 @@ namespace limber {
 namespace {
 
 using namespace rows;
-
-constexpr std::array<std::string_view, 7> kTypes = {"fixed",  "revolute", "continuous", "prismatic",
-                                                    "planar", "floating", "spherical"};
 
 struct LiveRows {
   const Row *value, *speed, *angles, *offsets, *relrot, *position, *rotation, *axis;
@@ -76,15 +72,6 @@ Row stop(std::string name, const char* unit, double initial, std::string doc) {
 }
 
 }  // namespace
-
-std::string_view joint_type_name(JointType type) { return kTypes[static_cast<std::size_t>(type)]; }
-
-std::optional<JointType> joint_type_named(std::string_view name) {
-  for (std::size_t i = 0; i < kTypes.size(); i++) {
-    if (same_name(kTypes[i], name)) return static_cast<JointType>(i);
-  }
-  return {};
-}
 
 const Table& Joint::table() {
   static const Table table(

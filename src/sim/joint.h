@@ -76,8 +76,4 @@ class Joint {
   Motor* motor_ = nullptr;
 };
 
-/// "revolute", "prismatic" … and back (by the one naming rule).
-std::string_view joint_type_name(JointType type);
-std::optional<JointType> joint_type_named(std::string_view name);
-
 }  // namespace limber

@@ -1,0 +1,90 @@
+// The doctor's findings.
+#include "app/doctor.h"
+
+#include <cstdlib>
+#include <fstream>
+#include <string>
+#include <string_view>
+#include <thread>
+
+#include <fmt/format.h>
+#include <sys/utsname.h>
+
+#include "app/paths.h"
+#include "base/build_info.h"
+#include "engine/link.h"
+#include "osc/network.h"
+
+namespace limber {
+
+namespace {
+
+void finding(std::string_view mark, std::string_view what, std::string_view text) {
+  fmt::print("{:4} {:10} {}\n", mark, what, text);
+}
+
+std::string system_name() {
+  std::ifstream file("/etc/os-release");
+  std::string line;
+  while (std::getline(file, line)) {
+    if (line.starts_with("PRETTY_NAME=")) return line.substr(13, line.size() - 14);
+  }
+  return "an unknown system";
+}
+
+long number_in(const char* path) {
+  std::ifstream file(path);
+  long number = 0;
+  file >> number;
+  return number;
+}
+
+bool check_ports() {
+  EngineLink link;
+  Network network(link, OscOptions{}, live_offsets());
+  const Result<void> open = network.start();
+  network.stop();
+  if (open) {
+    finding("ok", "ports", "OSC in 127.0.0.1:9003 is free");
+  } else {
+    finding("no", "ports", open.error());
+  }
+  return open.ok();
+}
+
+}  // namespace
+
+int doctor_command() {
+  utsname machine{};
+  uname(&machine);
+  finding("ok", "limber", fmt::format("{} ({})", version(), commit()));
+  finding("ok", "system",
+          fmt::format("{}, {} {}, {} cores", system_name(), machine.sysname, machine.machine,
+                      std::thread::hardware_concurrency()));
+
+  const std::string data = data_dir();
+  if (data.empty()) {
+    finding("no", "data",
+            "scripts/ and urdf/ are not beside the program nor installed; call ./run, or cmake --install build");
+  } else {
+    finding("ok", "data", data);
+  }
+  const bool ports = check_ports();
+
+  const long buffer = number_in("/proc/sys/net/core/rmem_max");
+  constexpr long kWanted = 4194304;
+  if (buffer >= kWanted) {
+    finding("ok", "buffer",
+            fmt::format("the kernel grants {} bytes to a socket: bursts of 10 000 messages come through", buffer));
+  } else {
+    finding("mind", "buffer",
+            fmt::format("the kernel grants {} bytes to a socket, bursts over some hundred messages may be lost; "
+                        "sysctl -w net.core.rmem_max={} lifts that",
+                        buffer, kWanted));
+  }
+  const bool display = std::getenv("DISPLAY") != nullptr || std::getenv("WAYLAND_DISPLAY") != nullptr;
+  finding("ok", "display", display ? "there is one; this version plays headless" : "none; Limber plays headless");
+  return data.empty() || !ports ? 3 : 0;
+}
+
+}  // namespace limber

@@ -1,0 +1,131 @@
+// The command line, with CLI11. Without a command it plays.
+#include "app/options.h"
+
+#include <algorithm>
+#include <array>
+#include <string>
+#include <vector>
+
+#include <fmt/format.h>
+#include <CLI/CLI.hpp>
+
+#include "app/bench.h"
+#include "app/describe.h"
+#include "app/doctor.h"
+#include "app/inspect.h"
+#include "app/play.h"
+#include "base/build_info.h"
+
+namespace limber {
+
+namespace {
+
+constexpr int kUsage = 2;
+constexpr std::array<std::string_view, 5> kCommands = {"play", "inspect", "describe", "bench", "doctor"};
+
+constexpr const char* kAbout =
+    "Limber: a live simulator of actuated, articulated bodies, scripted in Lua, played over OSC.\n\n"
+    "  limber                                       plays scripts/arms.lua\n"
+    "  limber my.lua --osc-in 0.0.0.0:9003          another scene, answering the whole network\n"
+    "  oscsend 127.0.0.1 9003 /physics/sim/gravity f -1.6\n"
+    "  limber my.lua --fast --duration 10 --hash    ten simulated seconds, as fast as it can\n";
+
+constexpr const char* kExitCodes =
+    "Exit codes: 0 fine; 1 the input is at fault; 2 wrong usage; 3 the machine is at fault (a port taken, say).\n"
+    "`limber COMMAND --help` tells more of each.";
+
+CLI::App* add_play(CLI::App& app, PlayOptions& o) {
+  CLI::App* play = app.add_subcommand("play", "play a scene (the default command)");
+  play->add_option("scene", o.scene, "the scene's file; left out: scripts/arms.lua")->type_name("SCENE.lua");
+  play->add_flag_callback(
+      "--headless", [] {}, "without a window (today it always is)");
+  play->add_flag("--fast", o.fast, "as fast as it can instead of in real time; no OSC unless asked for");
+  play->add_option("--duration", o.duration, "end at that simulated time")->type_name("S")->check(CLI::PositiveNumber);
+  play->add_option("--ticks", o.ticks, "end after so many ticks")->type_name("N");
+  play->add_option("--seed", o.seed, "seed of everything random; wins over sim.seed of the scene")->type_name("N");
+  play->add_option("--set", o.sets, "set a value after the scene ran; a path or the seed's address")
+      ->type_name("PATH=VALUE")
+      ->allow_extra_args(false);
+  play->add_option("--osc-in", o.osc_in, "where OSC comes in; default 127.0.0.1:9003")->type_name("[ADDR:]PORT|off");
+  play->add_option("--osc-allow", o.osc_allow, "only these senders, such as 192.168.1.0/24")->type_name("CIDR,...");
+  play->add_option("--osc-out", o.osc_out,
+                   "where joint poses stream to; default 127.0.0.1:9005. Options behind it: rate=60, "
+                   "bundle=off|1472|8192|65504, "
+                   "streams=pos+rot+relrot+relpos, bodies=arm*, errors=on")
+      ->type_name("HOST:PORT[,...]|off")
+      ->allow_extra_args(false);
+  play->add_flag("--osc-optional", o.osc_optional, "play on when a port can't be had");
+  play->add_option("--package-path", o.package_paths, "a folder for package:// in URDF files")
+      ->type_name("DIR")
+      ->allow_extra_args(false);
+  play->add_flag("--strict", o.strict, "end with 1 at any script error, refused value or health event");
+  play->add_flag("--hash", o.hash, "print the state hash at the end");
+  return play;
+}
+
+// argv as CLI11 is to see it: without a command in front, it is `play`
+std::vector<std::string> with_command(int argc, char** argv) {
+  std::vector<std::string> args(argv + std::min(argc, 1), argv + argc);
+  const bool names_one = !args.empty() && (args[0] == "-h" || args[0] == "--help" || args[0] == "--version" ||
+                                           std::find(kCommands.begin(), kCommands.end(), args[0]) != kCommands.end());
+  if (!names_one) args.insert(args.begin(), "play");
+  return args;
+}
+
+}  // namespace
+
+int run_command_line(int argc, char** argv) {
+  CLI::App app{kAbout, "limber"};
+  app.footer(kExitCodes);
+  app.set_version_flag("--version", fmt::format("limber {} ({})", version(), commit()));
+  app.require_subcommand(1);
+
+  PlayOptions play_options;
+  CLI::App* play = add_play(app, play_options);
+
+  std::string file;
+  bool json = false;
+  std::vector<std::string> package_paths;
+  CLI::App* inspect =
+      app.add_subcommand("inspect", "what the importer makes of a URDF file, and every problem with line and cure");
+  inspect->add_option("file", file, "the robot")->type_name("FILE.urdf")->required();
+  inspect->add_flag("--json", json, "for machines");
+  inspect->add_option("--package-path", package_paths, "a folder for package://")
+      ->type_name("DIR")
+      ->allow_extra_args(false);
+
+  std::string described;
+  CLI::App* describe =
+      app.add_subcommand("describe", "every address: path, the seed's message, type, unit, range, default, meaning");
+  describe->add_option("scene", described, "with a scene: every address that it has")->type_name("SCENE.lua");
+  describe->add_flag("--json", json, "for machines");
+
+  BenchOptions bench_options;
+  CLI::App* bench = app.add_subcommand("bench", "how fast it is here; scenes: " + bench_scene_list());
+  bench->add_option("scene", bench_options.scenes, "which ones; left out: all")->type_name("SCENE");
+  bench->add_flag("--compare-raw", bench_options.compare_raw, "beside a bare Bullet loop, interleaved, with the ratio");
+  bench->add_flag("--json", bench_options.json, "for machines");
+  bench->add_option("--ticks", bench_options.ticks, "ticks a round; left out: chosen for each scene")->type_name("N");
+
+  CLI::App* doctor = app.add_subcommand("doctor", "what works on this machine: ports, buffers, data");
+
+  std::vector<std::string> args = with_command(argc, argv);
+  std::reverse(args.begin(), args.end());  // CLI11 takes them from the back
+  try {
+    app.parse(args);
+  } catch (const CLI::ParseError& error) {
+    const bool asked = error.get_exit_code() == 0;
+    if (asked) return app.exit(error);
+    fmt::print(stderr, "limber: {}; `limber {}--help` tells what there is\n", error.what(),
+               app.get_subcommands().empty() ? "" : app.get_subcommands().front()->get_name() + " ");
+    return kUsage;
+  }
+  if (play->parsed()) return play_command(play_options);
+  if (inspect->parsed()) return inspect_command(file, json, package_paths);
+  if (describe->parsed()) return describe_command(described, json);
+  if (bench->parsed()) return bench_command(bench_options);
+  if (doctor->parsed()) return doctor_command();
+  return kUsage;
+}
+
+}  // namespace limber

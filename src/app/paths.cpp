@@ -1,0 +1,39 @@
+// Finding the program's data.
+#include "app/paths.h"
+
+#include <filesystem>
+
+#include "base/build_info.h"
+
+namespace limber {
+
+namespace fs = std::filesystem;
+
+std::string data_dir() {
+  std::error_code fault;
+  const fs::path program = fs::read_symlink("/proc/self/exe", fault);
+  std::vector<fs::path> places;
+  if (!fault) {
+    places.push_back(program.parent_path().parent_path());
+    places.push_back(program.parent_path().parent_path() / "share/limber");
+  }
+  places.emplace_back(install_data_dir());
+  for (const fs::path& place : places) {
+    if (fs::is_directory(place / "scripts", fault) && fs::is_directory(place / "urdf", fault)) return place.string();
+  }
+  return {};
+}
+
+std::string find_scene(std::string_view name, std::vector<std::string>& looked) {
+  std::vector<fs::path> places{fs::path(name)};
+  const std::string data = data_dir();
+  if (!data.empty() && fs::path(name).is_relative()) places.push_back(fs::path(data) / name);
+  std::error_code fault;
+  for (const fs::path& place : places) {
+    if (fs::is_regular_file(place, fault)) return place.string();
+    looked.push_back(fs::absolute(place, fault).lexically_normal().string());
+  }
+  return {};
+}
+
+}  // namespace limber

@@ -1,0 +1,17 @@
+// Where the program's own data (scripts, urdf) is: beside the build, or where it was installed.
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace limber {
+
+/// The folder that holds scripts/ and urdf/ of this program: above the program's file (a checkout), share/limber beside
+/// it, or the installed one; empty when there is none. [any]
+std::string data_dir();
+
+/// The file as given, else in the data folder; empty when neither is there. `looked` gets every place. [any]
+std::string find_scene(std::string_view name, std::vector<std::string>& looked);
+
+}  // namespace limber

@@ -1,0 +1,31 @@
+// `limber play`: a scene, its OSC, a status line a second, until it ends or somebody ends it.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace limber {
+
+/// The command line of `play`, as it was typed.
+struct PlayOptions {
+  std::string scene = "scripts/arms.lua";
+  bool fast = false;
+  bool hash = false;
+  bool strict = false;
+  std::optional<std::uint64_t> ticks;
+  std::optional<double> duration;
+  std::optional<std::uint64_t> seed;
+  std::vector<std::string> sets;  ///< PATH=VALUE
+  std::vector<std::string> package_paths;
+  std::string osc_in;  ///< Empty: not given.
+  std::string osc_allow;
+  std::vector<std::string> osc_out;
+  bool osc_optional = false;
+};
+
+/// Plays; returns the exit code of product.md: 0 fine, 1 the input, 2 usage, 3 the machine. [main]
+int play_command(const PlayOptions& options);
+
+}  // namespace limber
