@@ -1,0 +1,103 @@
+// sendmmsg over runs of equal datagrams.
+#include "osc/batch.h"
+
+#include <netinet/in.h>
+#include <netinet/udp.h>
+#include <sys/socket.h>
+
+#include <array>
+#include <cerrno>
+#include <cstring>
+
+namespace limber {
+
+namespace {
+
+constexpr std::size_t kCalls = 32;        // messages of one sendmmsg
+constexpr std::size_t kSegments = 64;     // the kernel's bound
+constexpr std::size_t kRunBytes = 65000;  // and that of the piece it cuts
+
+struct Call {
+  std::array<mmsghdr, kCalls> headers{};
+  std::array<iovec, kCalls> pieces{};
+  std::array<std::size_t, kCalls> datagrams{};
+  struct alignas(cmsghdr) Control {
+    std::array<char, CMSG_SPACE(sizeof(std::uint16_t))> bytes{};
+  };
+  std::array<Control, kCalls> control{};
+};
+
+// how many datagrams from `first` on make one piece
+std::size_t run_length(std::span<const std::uint32_t> sizes, std::size_t first, bool segmentation) {
+  if (!segmentation) return 1;
+  const std::uint32_t size = sizes[first];
+  std::size_t count = 1;
+  while (count < kSegments && first + count < sizes.size() && sizes[first + count] == size &&
+         (count + 1) * size <= kRunBytes) {
+    count++;
+  }
+  return count;
+}
+
+void add_piece(Call& call, std::size_t i, const sockaddr_in& to, const char* data, std::size_t bytes,
+               std::size_t datagrams) {
+  call.pieces[i] = {const_cast<char*>(data), bytes};
+  call.datagrams[i] = datagrams;
+  msghdr& h = call.headers[i].msg_hdr;
+  h = {};
+  h.msg_name = const_cast<sockaddr_in*>(&to);
+  h.msg_namelen = sizeof to;
+  h.msg_iov = &call.pieces[i];
+  h.msg_iovlen = 1;
+  if (datagrams == 1) return;
+  h.msg_control = call.control[i].bytes.data();
+  h.msg_controllen = call.control[i].bytes.size();
+  cmsghdr* c = CMSG_FIRSTHDR(&h);
+  c->cmsg_level = SOL_UDP;
+  c->cmsg_type = UDP_SEGMENT;
+  c->cmsg_len = CMSG_LEN(sizeof(std::uint16_t));
+  const auto size = static_cast<std::uint16_t>(bytes / datagrams);
+  std::memcpy(CMSG_DATA(c), &size, sizeof size);
+}
+
+// errors by which the kernel says that it can't cut on this route
+bool segmentation_refused(int error) {
+  return error == EIO || error == EINVAL || error == EMSGSIZE || error == ENOPROTOOPT || error == EOPNOTSUPP;
+}
+
+}  // namespace
+
+BatchResult send_batch(int fd, const Endpoint& to, std::span<const char> bytes, std::span<const std::uint32_t> sizes,
+                       bool& segmentation) {
+  const sockaddr_in address = socket_address(to);
+  Call call;
+  BatchResult result;
+  std::size_t at = 0;  // bytes before datagram `result.sent`
+  while (result.sent < sizes.size()) {
+    std::size_t count = 0;
+    std::size_t next = result.sent;
+    for (std::size_t offset = at; count < kCalls && next < sizes.size(); count++) {
+      const std::size_t run = run_length(sizes, next, segmentation);
+      add_piece(call, count, address, bytes.data() + offset, run * sizes[next], run);
+      offset += run * sizes[next];
+      next += run;
+    }
+    const int done = sendmmsg(fd, call.headers.data(), static_cast<unsigned>(count), MSG_DONTWAIT | MSG_NOSIGNAL);
+    if (done < 0) {
+      if (errno == EINTR) continue;
+      if (call.datagrams[0] > 1 && segmentation_refused(errno)) {
+        segmentation = false;
+        continue;
+      }
+      result.error = errno;
+      return result;
+    }
+    for (std::size_t i = 0; i < static_cast<std::size_t>(done); i++) {
+      at += call.pieces[i].iov_len;
+      result.sent += call.datagrams[i];
+    }
+  }
+  return result;
+}
+
+}  // namespace limber

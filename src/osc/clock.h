@@ -1,0 +1,27 @@
+// The two clocks of the network thread, handed in so that tests turn them by hand.
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <functional>
+
+namespace limber {
+
+/// Real time in two forms.
+struct NetClock {
+  /// Nanoseconds that only grow; the zero is anywhere.
+  std::function<std::int64_t()> steady = [] {
+    return std::chrono::duration_cast<std::chrono::nanoseconds>(std::chrono::steady_clock::now().time_since_epoch())
+        .count();
+  };
+  /// NTP time as OSC's time tags have it: seconds since 1900 in the upper 32 bits, 1/2^32 s in the lower.
+  std::function<std::uint64_t()> ntp = [] {
+    constexpr std::uint64_t kFrom1900To1970 = 2208988800u;
+    const auto ns = static_cast<std::uint64_t>(
+        std::chrono::duration_cast<std::chrono::nanoseconds>(std::chrono::system_clock::now().time_since_epoch())
+            .count());
+    return (ns / 1'000'000'000u + kFrom1900To1970) << 32 | (ns % 1'000'000'000u << 32) / 1'000'000'000u;
+  };
+};
+
+}  // namespace limber

@@ -1,0 +1,150 @@
+// One loop, one poll: everything that OSC does happens between two waits.
+#include "osc/network.h"
+
+#include <poll.h>
+#include <pthread.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <ctime>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "base/log.h"
+#include "base/text.h"
+
+namespace limber {
+
+Network::Network(EngineLink& link, OscOptions options, const LiveOffsets& offsets, NetClock clock)
+    : link_(link),
+      options_(std::move(options)),
+      clock_(std::move(clock)),
+      wake_(std::make_shared<Wake>()),
+      receiver_(link, options_.allow,
+                {[this](const Outgoing& out) { sender_.send(out); },
+                 [this](const Origin& to) {
+                   const std::shared_ptr<const Snapshot> newest = link_.snapshots.read();
+                   sender_.pong(to, newest ? newest->tick : 0, newest ? newest->time : 0);
+                 }},
+                clock_),
+      sender_(
+          link.counters, [this](const Endpoint& sender) { return receiver_.socket_of(sender); }, clock_),
+      streams_(link, offsets, clock_) {
+  link_.wake_network = [wake = wake_] { wake->ring(); };
+}
+
+Network::~Network() { stop(); }
+
+Result<void> Network::start() {
+  if (thread_.joinable()) return {};
+  seen_plan_ = link_.osc_plan.read();
+  std::vector<std::string> faults;
+  if (const Result<void> opened = sender_.open(); !opened) faults.push_back(opened.error());
+  std::ranges::move(apply(effective_plan(options_, seen_plan_.get())), std::back_inserter(faults));
+  if (!faults.empty() && !options_.optional) {
+    stop();
+    return Error{fmt::format("{}", fmt::join(faults, "\n"))};
+  }
+  for (const std::string& fault : faults) log_warning("{}", fault);
+  stop_ = false;
+  thread_ = std::thread([this] { run(); });
+  pthread_setname_np(thread_.native_handle(), "limber-network");
+  return {};
+}
+
+void Network::stop() {
+  if (thread_.joinable()) {
+    stop_ = true;
+    wake_->ring();
+    thread_.join();
+  }
+  // what the engine said before it stopped still goes out
+  if (sender_.fd() >= 0) send_outbox();
+  receiver_.close();
+  sender_.close();
+  plan_ = {};
+  streams_.set_targets({});
+  const std::scoped_lock lock(status_mutex_);
+  lines_.clear();
+  bound_.clear();
+}
+
+std::vector<std::string> Network::lines() const {
+  const std::scoped_lock lock(status_mutex_);
+  return lines_;
+}
+
+std::vector<Endpoint> Network::bound() const {
+  const std::scoped_lock lock(status_mutex_);
+  return bound_;
+}
+
+void Network::run() {
+  while (!stop_.load()) {
+    wait_for_something();
+    wake_->answer();
+    for (const int fd : descriptors_) receiver_.receive(fd);
+    receiver_.release_due();
+    apply_new_plan();
+    send_outbox();
+    streams_.send_due(sender_.fd());
+  }
+}
+
+void Network::wait_for_something() {
+  std::vector<pollfd> polled;
+  polled.push_back({wake_->fd(), POLLIN, 0});
+  for (const int fd : descriptors_) polled.push_back({fd, POLLIN, 0});
+  std::optional<std::int64_t> wait = streams_.wait();
+  if (const auto held = receiver_.wait(); held && (!wait || *held < *wait)) wait = held;
+  timespec limit{};
+  if (wait) limit = {*wait / 1'000'000'000, *wait % 1'000'000'000};
+  // interrupted or not: the loop looks at everything anyway
+  ppoll(polled.data(), polled.size(), wait ? &limit : nullptr, nullptr);
+}
+
+// opens and closes what differs from the plan before; the texts of what went wrong
+std::vector<std::string> Network::apply(const OscPlan& plan) {
+  std::vector<std::string> faults = receiver_.listen(plan.listen);
+  targets_.clear();
+  for (const StreamTarget& wish : plan.targets) {
+    const Result<Endpoint> at = resolve(wish.host, wish.port);
+    if (at) {
+      targets_.push_back({wish, *at});
+    } else {
+      faults.push_back(fmt::format("OSC can't stream to {}:{}: {}; correct it in the scene or with --osc-out HOST:PORT",
+                                   printable(wish.host), wish.port, at.error()));
+    }
+  }
+  sender_.set_targets(targets_);
+  streams_.set_targets(targets_);
+  descriptors_ = receiver_.descriptors();
+  plan_ = plan;
+
+  const std::scoped_lock lock(status_mutex_);
+  bound_ = receiver_.bound();
+  lines_.clear();
+  for (const Endpoint& end : bound_) lines_.push_back("OSC in " + endpoint_text(end));
+  if (bound_.empty()) lines_.push_back("OSC in off");
+  for (const Target& target : targets_) lines_.push_back("OSC out " + target_text(target.wish));
+  if (targets_.empty()) lines_.push_back("OSC out off");
+  return faults;
+}
+
+void Network::apply_new_plan() {
+  std::shared_ptr<const OscPlan> wished = link_.osc_plan.read();
+  if (wished == seen_plan_) return;
+  seen_plan_ = std::move(wished);
+  const OscPlan plan = effective_plan(options_, seen_plan_.get());
+  if (plan == plan_) return;
+  for (const std::string& fault : apply(plan)) log_error("{}", fault);
+  for (const std::string& line : lines()) log_info("{}", line);
+}
+
+void Network::send_outbox() {
+  link_.outbox.drain(outgoing_);
+  for (const Outgoing& out : outgoing_) sender_.send(out);
+}
+
+}  // namespace limber

@@ -1,0 +1,69 @@
+// The network thread: polls the listening sockets and the engine's bell, answers, sends and streams.
+#pragma once
+
+#include <atomic>
+#include <memory>
+#include <mutex>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "base/result.h"
+#include "engine/link.h"
+#include "osc/clock.h"
+#include "osc/options.h"
+#include "osc/receiver.h"
+#include "osc/sender.h"
+#include "osc/streams.h"
+#include "osc/wake.h"
+
+namespace limber {
+
+/// OSC in and out of one engine. Make it before the engine starts (it sets `link.wake_network`, which stays usable when
+/// the Network is gone); start it when the scene has run once, so that the scene's plan counts. `link` outlives it.
+class Network {
+ public:
+  Network(EngineLink& link, OscOptions options, const LiveOffsets& offsets, NetClock clock = {});
+  ~Network();
+  Network(const Network&) = delete;
+  Network& operator=(const Network&) = delete;
+
+  /// Opens the ports and starts the thread. The error names what can't be had and the option that changes it; with
+  /// `--osc-optional` it is a warning, and what can be had is open. [main]
+  Result<void> start();
+  /// Ends the thread at once and closes everything. Idempotent. [main]
+  void stop();
+
+  /// "OSC in 127.0.0.1:9003", "OSC out 127.0.0.1:9005 (pos+rot+relrot at 60 Hz)": what is open now. [any]
+  std::vector<std::string> lines() const;
+  /// The listening ends as bound, with the port that the system chose where 0 was asked for. [any]
+  std::vector<Endpoint> bound() const;
+
+ private:
+  void run();
+  void wait_for_something();
+  std::vector<std::string> apply(const OscPlan& plan);
+  void apply_new_plan();
+  void send_outbox();
+
+  EngineLink& link_;
+  const OscOptions options_;
+  const NetClock clock_;
+  std::shared_ptr<Wake> wake_;
+  Receiver receiver_;
+  Sender sender_;
+  Streams streams_;
+  std::shared_ptr<const OscPlan> seen_plan_;
+  OscPlan plan_;
+  std::vector<Target> targets_;
+  std::vector<Outgoing> outgoing_;
+  std::vector<int> descriptors_;
+  std::thread thread_;
+  std::atomic<bool> stop_{false};
+
+  mutable std::mutex status_mutex_;  // guards what other threads ask for
+  std::vector<std::string> lines_;
+  std::vector<Endpoint> bound_;
+};
+
+}  // namespace limber

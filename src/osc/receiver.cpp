@@ -1,0 +1,260 @@
+// recvmmsg in rounds of sixteen; nothing here throws, and nothing is logged per datagram.
+#include "osc/receiver.h"
+
+#include <netinet/in.h>
+#include <sys/socket.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cstring>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "base/log.h"
+#include "base/text.h"
+#include "osc/decode.h"
+#include "osc/validate.h"
+
+namespace limber {
+
+namespace {
+
+constexpr std::size_t kBatch = 16;
+constexpr int kRounds = 64;
+constexpr std::size_t kDatagram = 65536;  // more than UDP can carry, so nothing is cut
+constexpr int kReceiveBuffer = 4 << 20;
+constexpr const char* kCure = "choose another with --osc-in ADDR:PORT, or play without with --osc-optional";
+
+std::size_t slot_of(const Endpoint& e) { return (e.ip * 2654435761u ^ e.port * 40503u) >> 7; }
+
+}  // namespace
+
+// the text is made only when it is said
+template <class Text>
+void Receiver::warn_seldom(Seldom& kind, const Text& text) {
+  if (const std::optional<std::string> more = kind.ask(clock_.steady())) log_warning("{}{}", text(), *more);
+}
+
+struct Receiver::Listening {
+  ListenAddress wish;
+  Socket socket;
+  std::uint32_t kernel_drops = 0;  // the kernel counts from the socket's birth
+};
+
+struct Receiver::Buffers {
+  std::vector<char> bytes = std::vector<char>(kBatch * kDatagram);
+  std::array<iovec, kBatch> pieces{};
+  std::array<sockaddr_in, kBatch> from{};
+  std::array<mmsghdr, kBatch> headers{};
+  struct alignas(cmsghdr) Control {
+    std::array<char, 64> bytes;
+  };
+  std::array<Control, kBatch> control{};
+
+  // the kernel writes into lengths, so they are set anew before each round
+  void prepare() {
+    for (std::size_t i = 0; i < kBatch; i++) {
+      pieces[i] = {bytes.data() + i * kDatagram, kDatagram};
+      msghdr& h = headers[i].msg_hdr;
+      h = {};
+      h.msg_name = &from[i];
+      h.msg_namelen = sizeof from[i];
+      h.msg_iov = &pieces[i];
+      h.msg_iovlen = 1;
+      h.msg_control = control[i].bytes.data();
+      h.msg_controllen = control[i].bytes.size();
+    }
+  }
+};
+
+Receiver::Receiver(EngineLink& link, std::vector<Cidr> allow, ReceiverAnswers answers, const NetClock& clock)
+    : link_(link),
+      allow_(std::move(allow)),
+      answers_(std::move(answers)),
+      clock_(clock),
+      held_(clock),
+      buffers_(std::make_unique<Buffers>()) {}
+
+Receiver::~Receiver() = default;
+
+void Receiver::close() { sockets_.clear(); }
+
+std::vector<std::string> Receiver::listen(const std::vector<ListenAddress>& addresses) {
+  std::erase_if(sockets_, [&](const auto& s) { return std::ranges::find(addresses, s->wish) == addresses.end(); });
+  std::vector<std::string> faults;
+  for (const ListenAddress& address : addresses) {
+    const bool open_already = std::ranges::any_of(sockets_, [&](const auto& s) { return s->wish == address; });
+    if (open_already) continue;
+    if (std::optional<std::string> fault = open(address)) faults.push_back(*fault);
+  }
+  return faults;
+}
+
+std::optional<std::string> Receiver::open(const ListenAddress& address) {
+  const std::string name = fmt::format("{}:{}", printable(address.address), address.port);
+  const Result<Endpoint> at = resolve(address.address, address.port);
+  if (!at) return fmt::format("OSC can't listen on {}: {}; {}", name, at.error(), kCure);
+  Result<Socket> socket = open_udp(*at);
+  if (!socket) return fmt::format("OSC can't listen on {}: {}; {}", name, socket.error(), kCure);
+
+  const int on = 1;
+  setsockopt(socket->fd(), SOL_SOCKET, SO_RXQ_OVFL, &on, sizeof on);
+  setsockopt(socket->fd(), SOL_SOCKET, SO_RCVBUF, &kReceiveBuffer, sizeof kReceiveBuffer);
+  int granted = 0;
+  socklen_t length = sizeof granted;
+  getsockopt(socket->fd(), SOL_SOCKET, SO_RCVBUF, &granted, &length);
+  // the kernel doubles what it grants, for its own bookkeeping
+  if (granted / 2 < kReceiveBuffer && !said_buffer_) {
+    said_buffer_ = true;
+    log_info(
+        "OSC in: the system grants a receive buffer of {} KiB instead of {}; bursts of many messages may lose "
+        "some; cure: sysctl -w net.core.rmem_max={}",
+        granted / 2048, kReceiveBuffer / 1024, kReceiveBuffer);
+  }
+  if (at->ip == 0) {
+    log_warning("OSC in {}: open to the network{}", name,
+                allow_.empty() ? ", everyone may play; --osc-allow CIDR limits it" : " for whom --osc-allow names");
+  }
+  sockets_.push_back(std::make_unique<Listening>(Listening{address, std::move(*socket), 0}));
+  return std::nullopt;
+}
+
+std::vector<int> Receiver::descriptors() const {
+  std::vector<int> list;
+  for (const auto& s : sockets_) list.push_back(s->socket.fd());
+  return list;
+}
+
+std::vector<Endpoint> Receiver::bound() const {
+  std::vector<Endpoint> list;
+  for (const auto& s : sockets_) list.push_back(s->socket.local());
+  return list;
+}
+
+void Receiver::receive(int fd) {
+  const auto found = std::ranges::find_if(sockets_, [&](const auto& s) { return s->socket.fd() == fd; });
+  if (found == sockets_.end()) return;
+  Listening& socket = **found;
+  for (int round = 0; round < kRounds; round++) {
+    buffers_->prepare();
+    const int count = recvmmsg(fd, buffers_->headers.data(), kBatch, MSG_DONTWAIT, nullptr);
+    // an error (nothing there, a signal) is the same as an empty round: poll says when there is more
+    if (count <= 0) break;
+    for (std::size_t i = 0; i < static_cast<std::size_t>(count); i++) {
+      msghdr& header = buffers_->headers[i].msg_hdr;
+      for (cmsghdr* c = CMSG_FIRSTHDR(&header); c != nullptr; c = CMSG_NXTHDR(&header, c)) {
+        if (c->cmsg_level != SOL_SOCKET || c->cmsg_type != SO_RXQ_OVFL) continue;
+        std::uint32_t drops = 0;
+        std::memcpy(&drops, CMSG_DATA(c), sizeof drops);
+        note_kernel_drops(socket, drops);
+      }
+      const auto* data = static_cast<const char*>(buffers_->pieces[i].iov_base);
+      take_from(socket, data, buffers_->headers[i].msg_len, endpoint_of(buffers_->from[i]));
+    }
+    if (static_cast<std::size_t>(count) < kBatch) break;
+  }
+  if (std::exchange(pushed_, false)) link_.wake_engine();
+}
+
+void Receiver::take_from(Listening& socket, const char* data, std::size_t size, const Endpoint& from) {
+  known_[slot_of(from) % kKnown] = {from, socket.socket.fd()};
+  take(data, size, from);
+}
+
+void Receiver::take(const char* data, std::size_t size, const Endpoint& from) {
+  if (!allowed(from)) {
+    denied_++;
+    warn_seldom(not_allowed_,
+                [&] { return fmt::format("OSC from {} ignored: --osc-allow does not hold it", endpoint_text(from)); });
+    return;
+  }
+  const char* fault = packet_fault(data, size);
+  Result<Decoded> decoded = fault == nullptr ? decode_packet(data, size) : Result<Decoded>(Error{fault});
+  if (!decoded) {
+    link_.counters.malformed.fetch_add(1, std::memory_order_relaxed);
+    warn_seldom(malformed_, [&] {
+      return fmt::format("{} bytes from {} are no OSC: {}", size, endpoint_text(from), decoded.error());
+    });
+    return;
+  }
+  const Origin origin{Hand::osc, from.ip, from.port};
+  link_.counters.received.fetch_add(decoded->messages.size() + decoded->refused.size(), std::memory_order_relaxed);
+  for (const RefusedMessage& r : decoded->refused) refuse(origin, r.address, r.text);
+
+  // a ping asks this thread, not the simulation
+  const auto pings = std::erase_if(decoded->messages, [](const Message& m) { return m.address == "/ping"; });
+  for (std::size_t i = 0; i < pings; i++) answers_.pong(origin);
+  if (!decoded->messages.empty()) deliver(decoded->time_tag, {std::move(decoded->messages), origin});
+}
+
+void Receiver::deliver(std::uint64_t time_tag, Command command) {
+  switch (held_.offer(time_tag, command)) {
+    case HeldCommands::Verdict::held:
+      return;
+    case HeldCommands::Verdict::far:
+      warn_seldom(far_, [&] {
+        return fmt::format(
+            "a bundle from {} is dated more than 10 s ahead: applied now; its sender's clock or this "
+            "machine's is wrong",
+            endpoint_text({command.origin.ip, command.origin.port}));
+      });
+      break;
+    case HeldCommands::Verdict::full:
+      warn_seldom(held_full_, [] {
+        return fmt::format("{} bundles wait for their time: further ones are applied now", HeldCommands::kMost);
+      });
+      break;
+    case HeldCommands::Verdict::now:
+      break;
+  }
+  push(std::move(command));
+}
+
+void Receiver::release_due() {
+  while (std::optional<Command> command = held_.due()) push(std::move(*command));
+  if (std::exchange(pushed_, false)) link_.wake_engine();
+}
+
+void Receiver::push(Command command) {
+  const std::size_t count = command.messages.size();
+  if (link_.inbox.push(std::move(command))) {
+    pushed_ = true;
+    return;
+  }
+  link_.counters.dropped.fetch_add(count, std::memory_order_relaxed);
+  warn_seldom(inbox_full_, [] { return "OSC comes in faster than the simulation takes it: messages are dropped"; });
+}
+
+void Receiver::refuse(const Origin& origin, const std::string& address, const std::string& text) {
+  link_.counters.refused.fetch_add(1, std::memory_order_relaxed);
+  answers_.error({Outgoing::To::error, origin, {"/error", {Arg::of(address), Arg::of(text)}}});
+}
+
+void Receiver::note_kernel_drops(Listening& socket, std::uint32_t count) {
+  // unsigned: right even when the kernel's counter wraps
+  const std::uint32_t news = count - socket.kernel_drops;
+  socket.kernel_drops = count;
+  if (news == 0) return;
+  link_.counters.dropped_kernel.fetch_add(news, std::memory_order_relaxed);
+  warn_seldom(kernel_full_, [&] {
+    return fmt::format(
+        "OSC in {}: the system dropped {} datagrams; a larger net.core.rmem_max or bundles instead of "
+        "single messages help",
+        endpoint_text(socket.socket.local()), news);
+  });
+}
+
+int Receiver::socket_of(const Endpoint& sender) const {
+  const Known& known = known_[slot_of(sender) % kKnown];
+  if (known.sender != sender) return -1;
+  // the socket may have been closed since, and its number given to something else
+  const bool ours = std::ranges::any_of(sockets_, [&](const auto& s) { return s->socket.fd() == known.fd; });
+  return ours ? known.fd : -1;
+}
+
+bool Receiver::allowed(const Endpoint& from) const {
+  return allow_.empty() || std::ranges::any_of(allow_, [&](const Cidr& c) { return c.holds(from.ip); });
+}
+
+}  // namespace limber

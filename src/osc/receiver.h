@@ -1,0 +1,88 @@
+// The receiver: listening sockets, and the way of a datagram: allowed, whole, decoded, then now or when it is due into
+// the engine's inbox, all messages of a datagram as one command.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "engine/link.h"
+#include "osc/clock.h"
+#include "osc/held.h"
+#include "osc/options.h"
+#include "osc/seldom.h"
+#include "osc/socket.h"
+
+namespace limber {
+
+/// Where the receiver's own answers go.
+struct ReceiverAnswers {
+  std::function<void(const Outgoing&)> error = [](const Outgoing&) {};
+  std::function<void(const Origin&)> pong = [](const Origin&) {};
+};
+
+/// [net], but for what says otherwise
+class Receiver {
+ public:
+  Receiver(EngineLink& link, std::vector<Cidr> allow, ReceiverAnswers answers, const NetClock& clock);
+  ~Receiver();
+
+  /// Opens what is new in the list, closes what is not in it, keeps the rest. The texts of what could not be opened.
+  std::vector<std::string> listen(const std::vector<ListenAddress>& addresses);
+  void close();
+
+  /// The sockets to poll, and where they are bound, in the order of opening.
+  std::vector<int> descriptors() const;
+  std::vector<Endpoint> bound() const;
+
+  /// Reads what waits in the socket, at most a thousand datagrams, so that streams get their turn.
+  void receive(int fd);
+  /// One datagram, as if it had come in by a socket. The fuzz target begins here.
+  void take(const char* data, std::size_t size, const Endpoint& from);
+  /// Gives the engine the held bundles that are due.
+  void release_due();
+  std::optional<std::int64_t> wait() const { return held_.wait(); }
+
+  /// The listening socket by which this sender's last message came, so that the answer comes from where the question
+  /// went; -1 when it is forgotten.
+  int socket_of(const Endpoint& sender) const;
+  std::uint64_t denied() const { return denied_; }
+
+ private:
+  struct Listening;
+  struct Buffers;
+  struct Known {
+    Endpoint sender;
+    int fd = -1;
+  };
+  static constexpr std::size_t kKnown = 256;  // a power of two
+
+  std::optional<std::string> open(const ListenAddress& address);
+  void take_from(Listening& socket, const char* data, std::size_t size, const Endpoint& from);
+  void deliver(std::uint64_t time_tag, Command command);
+  void push(Command command);
+  void refuse(const Origin& origin, const std::string& address, const std::string& text);
+  void note_kernel_drops(Listening& socket, std::uint32_t count);
+  bool allowed(const Endpoint& from) const;
+  template <class Text>
+  void warn_seldom(Seldom& kind, const Text& text);
+
+  EngineLink& link_;
+  std::vector<Cidr> allow_;
+  ReceiverAnswers answers_;
+  const NetClock& clock_;
+  HeldCommands held_;
+  std::vector<std::unique_ptr<Listening>> sockets_;
+  std::unique_ptr<Buffers> buffers_;
+  std::array<Known, kKnown> known_{};
+  std::uint64_t denied_ = 0;
+  bool pushed_ = false;  // since the engine was woken
+  bool said_buffer_ = false;
+  Seldom malformed_, not_allowed_, inbox_full_, kernel_full_, far_, held_full_;
+};
+
+}  // namespace limber

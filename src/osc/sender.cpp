@@ -1,0 +1,105 @@
+// Every send is non-blocking: what the system does not take at once is lost, counted by nobody, and said seldom.
+#include "osc/sender.h"
+
+#include <netinet/in.h>
+#include <sys/socket.h>
+
+#include <algorithm>
+#include <array>
+#include <cerrno>
+#include <string_view>
+#include <system_error>
+#include <utility>
+
+#include "base/log.h"
+#include "base/text.h"
+
+namespace limber {
+
+namespace {
+
+constexpr int kSendBuffer = 4 << 20;  // a whole frame of a thousand bodies fits
+constexpr int kUnreadBuffer = 4096;   // nobody reads what is sent to the sending socket
+constexpr std::array<std::string_view, 6> kNeverAnswered = {
+    "/error", "/pong", "/physics/joint/pos", "/physics/joint/rot", "/physics/joint/relrot", "/physics/joint/relpos"};
+
+bool answerable(const Message& error) {
+  const std::string_view about = error.args.empty() ? std::string_view() : std::string_view(error.args[0].text);
+  return std::ranges::find(kNeverAnswered, about) == kNeverAnswered.end();
+}
+
+}  // namespace
+
+Sender::Sender(Counters& counters, std::function<int(const Endpoint&)> reply_socket, const NetClock& clock)
+    : counters_(counters), reply_socket_(std::move(reply_socket)), clock_(clock) {}
+
+Result<void> Sender::open() {
+  Result<Socket> socket = open_udp({});
+  if (!socket) return Error{"OSC can't open a socket to send from: " + socket.error()};
+  setsockopt(socket->fd(), SOL_SOCKET, SO_SNDBUF, &kSendBuffer, sizeof kSendBuffer);
+  setsockopt(socket->fd(), SOL_SOCKET, SO_RCVBUF, &kUnreadBuffer, sizeof kUnreadBuffer);
+  const int on = 1;
+  setsockopt(socket->fd(), SOL_SOCKET, SO_BROADCAST, &on, sizeof on);
+  socket_ = std::move(*socket);
+  return {};
+}
+
+void Sender::send(const Outgoing& out) {
+  const bool error = out.to == Outgoing::To::error;
+  if (error && !answerable(out.message)) return;
+  if (error && !limit_.allow({out.origin.ip, out.origin.port}, clock_.steady())) return;
+  const std::span<const char> packet = encode_message(out.message, buffer_);
+  if (packet.empty()) {
+    if (const auto more = too_large_.ask(clock_.steady())) {
+      log_warning("OSC out: a message {} larger than 65504 bytes is not sent{}", printable(out.message.address), *more);
+    }
+    return;
+  }
+  switch (out.to) {
+    case Outgoing::To::sender:
+    case Outgoing::To::direct:
+      to_origin(out.origin, packet, out.to == Outgoing::To::sender);
+      return;
+    case Outgoing::To::error:
+      to_origin(out.origin, packet, true);
+      to_targets(packet, true);
+      return;
+    case Outgoing::To::targets:
+    case Outgoing::To::event:
+      to_targets(packet, false);
+      return;
+  }
+}
+
+void Sender::pong(const Origin& to, std::uint64_t tick, double time) {
+  to_origin(to, encode_pong(tick, time, buffer_), true);
+}
+
+void Sender::to_origin(const Origin& origin, std::span<const char> packet, bool answer) {
+  // a message from the panel or the command line has no address to answer to
+  if (origin.ip == 0 || origin.port == 0) return;
+  const Endpoint to{origin.ip, origin.port};
+  const int listening = answer ? reply_socket_(to) : -1;
+  datagram(listening >= 0 ? listening : socket_.fd(), to, packet);
+}
+
+void Sender::to_targets(std::span<const char> packet, bool only_those_wanting_errors) {
+  for (const Target& target : targets_) {
+    if (!only_those_wanting_errors || target.wish.errors) datagram(socket_.fd(), target.at, packet);
+  }
+}
+
+void Sender::datagram(int fd, const Endpoint& to, std::span<const char> packet) {
+  const sockaddr_in address = socket_address(to);
+  const auto* where = reinterpret_cast<const sockaddr*>(&address);
+  if (sendto(fd, packet.data(), packet.size(), MSG_DONTWAIT | MSG_NOSIGNAL, where, sizeof address) >= 0) {
+    counters_.sent.fetch_add(1, std::memory_order_relaxed);
+    return;
+  }
+  const std::string why = std::generic_category().message(errno);
+  if (const auto more = failed_.ask(clock_.steady())) {
+    log_warning("OSC out: can't send to {}: {}{}", endpoint_text(to), why, *more);
+  }
+}
+
+}  // namespace limber

@@ -1,0 +1,75 @@
+// One snapshot is read per round, so that all targets that are due in it show the same tick.
+#include "osc/streams.h"
+
+#include <algorithm>
+#include <system_error>
+#include <utility>
+
+#include "base/log.h"
+#include "base/text.h"
+#include "osc/batch.h"
+
+namespace limber {
+
+namespace {
+
+std::int64_t period_of(const StreamTarget& wish) {
+  return static_cast<std::int64_t>(1e9 / std::clamp(wish.rate, 0.1, 1000.0));
+}
+
+bool wants_streams(const StreamTarget& wish) { return wish.pos || wish.rot || wish.relrot || wish.relpos; }
+
+}  // namespace
+
+Streams::Streams(EngineLink& link, const LiveOffsets& offsets, const NetClock& clock)
+    : link_(link), offsets_(offsets), clock_(clock) {}
+
+void Streams::set_targets(const std::vector<Target>& targets) {
+  std::vector<std::unique_ptr<Stream>> streams;
+  for (const Target& target : targets) {
+    if (!wants_streams(target.wish)) continue;
+    const auto old = std::ranges::find_if(streams_, [&](const auto& s) { return s && s->target == target; });
+    streams.push_back(old != streams_.end() ? std::move(*old)
+                                            : std::make_unique<Stream>(target, offsets_, clock_.steady()));
+  }
+  streams_ = std::move(streams);
+}
+
+void Streams::send_due(int fd) {
+  const std::int64_t now = clock_.steady();
+  std::shared_ptr<const Snapshot> snapshot;
+  for (const auto& stream : streams_) {
+    if (stream->due > now) continue;
+    const std::int64_t period = period_of(stream->target.wish);
+    stream->due += ((now - stream->due) / period + 1) * period;
+    if (!snapshot) snapshot = link_.snapshots.read();
+    if (snapshot) send_frame(fd, *stream, *snapshot);
+  }
+}
+
+void Streams::send_frame(int fd, Stream& stream, const Snapshot& snapshot) {
+  stream.frame.lay_out(snapshot.roster, stream.target.wish);
+  if (!stream.frame.too_large().empty() && stream.said_too_large != snapshot.roster) {
+    stream.said_too_large = snapshot.roster;
+    log_warning("OSC out: body '{}' has too many joints for one message and is not streamed",
+                printable(stream.frame.too_large().front()));
+  }
+  stream.frame.fill(snapshot);
+  const BatchResult result =
+      send_batch(fd, stream.target.at, stream.frame.bytes(), stream.frame.datagram_sizes(), stream.segmentation);
+  link_.counters.sent.fetch_add(result.sent, std::memory_order_relaxed);
+  if (result.error == 0) return;
+  if (const auto more = lost_.ask(clock_.steady())) {
+    log_warning("OSC out to {}: {} of {} datagrams of a frame not sent: {}; fewer streams, bodies or frames help{}",
+                endpoint_text(stream.target.at), stream.frame.datagram_sizes().size() - result.sent,
+                stream.frame.datagram_sizes().size(), std::generic_category().message(result.error), *more);
+  }
+}
+
+std::optional<std::int64_t> Streams::wait() const {
+  if (streams_.empty()) return std::nullopt;
+  const auto next = std::ranges::min_element(streams_, {}, [](const auto& s) { return s->due; });
+  return std::max<std::int64_t>(0, (*next)->due - clock_.steady());
+}
+
+}  // namespace limber

@@ -1,0 +1,49 @@
+// The streams: frames of the newest snapshot to each target, at its own rate of real time.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "engine/link.h"
+#include "osc/clock.h"
+#include "osc/seldom.h"
+#include "osc/sender.h"
+#include "osc/stream_frame.h"
+
+namespace limber {
+
+/// Deadlines do not drift: frame n of a target is due n periods after its first. Frames that were missed by more than
+/// a period are left out, not sent late. [net]
+class Streams {
+ public:
+  Streams(EngineLink& link, const LiveOffsets& offsets, const NetClock& clock);
+
+  /// Targets that stand in the old list too keep their beat.
+  void set_targets(const std::vector<Target>& targets);
+  /// Sends what is due. A paused world's snapshot is sent again and again.
+  void send_due(int fd);
+  /// Nanoseconds until the next frame; nothing without streams.
+  std::optional<std::int64_t> wait() const;
+
+ private:
+  struct Stream {
+    Stream(const Target& t, const LiveOffsets& offsets, std::int64_t now) : target(t), due(now), frame(offsets) {}
+    Target target;
+    std::int64_t due;
+    StreamFrame frame;
+    std::shared_ptr<const Roster> said_too_large;  // the roster about which it was said
+    bool segmentation = true;
+  };
+
+  void send_frame(int fd, Stream& stream, const Snapshot& snapshot);
+
+  EngineLink& link_;
+  const LiveOffsets offsets_;
+  const NetClock& clock_;
+  std::vector<std::unique_ptr<Stream>> streams_;
+  Seldom lost_;
+};
+
+}  // namespace limber
