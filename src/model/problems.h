@@ -12,6 +12,7 @@ namespace limber {
 class Problems {
  public:
   static constexpr std::size_t kMost = 300;
+  static constexpr std::size_t kMostBytes = 600;  ///< Of one text; the rest of it is cut off.
 
   void note(int line, std::string text, std::string cure) {
     add(line, Severity::note, std::move(text), std::move(cure));
@@ -35,9 +36,15 @@ class Problems {
   const std::vector<Problem>& list() const { return list_; }
 
  private:
+  static std::string shortened(std::string text) {
+    if (text.size() <= kMostBytes) return text;
+    std::size_t end = kMostBytes;
+    while (end > 0 && (static_cast<unsigned char>(text[end]) & 0xC0u) == 0x80u) --end;
+    return text.substr(0, end) + "…";
+  }
   void add(int line, Severity severity, std::string text, std::string cure) {
     if (list_.size() < kMost) {
-      list_.push_back({line, severity, std::move(text), std::move(cure)});
+      list_.push_back({line, severity, shortened(std::move(text)), shortened(std::move(cure))});
     } else {
       ++dropped_;
       last_line_ = line;

@@ -17,6 +17,8 @@ namespace {
 
 using Element = tinyxml2::XMLElement;
 
+constexpr std::size_t kShownName = 40;
+
 const char* cure_of(tinyxml2::XMLError error) {
   switch (error) {
     case tinyxml2::XML_ERROR_MISMATCHED_ELEMENT:
@@ -71,10 +73,10 @@ class Check {
  private:
   void root(const Element& robot, const std::string& fallback_name) {
     const char* name = robot.Attribute("name");
-    file_.name = name && *name ? name : fallback_name;
-    if (!name || !*name) {
-      problems_.warning(robot.GetLineNum(),
-                        fmt::format("<robot> has no name; called '{}' after the file", printable(fallback_name)),
+    const bool usable = name && !name_fault(name);
+    file_.name = usable ? name : (name_fault(fallback_name) ? "robot" : fallback_name);
+    if (!usable) {
+      problems_.warning(robot.GetLineNum(), fmt::format("<robot> has no usable name; called '{}'", file_.name),
                         "Write <robot name=\"…\">.");
     }
     const char* version = robot.Attribute("version");
@@ -89,8 +91,7 @@ class Check {
   }
 
   void odd_name(const Element& element, std::string_view kind, const std::string& name) {
-    const std::optional<std::string> fault = name_fault(name);
-    const bool hard = fault || escape_name(name) != name || name.find_first_of("&<>\"'") != std::string::npos;
+    const bool hard = escape_name(name) != name || name.find_first_of("&<>\"'") != std::string::npos;
     if (!hard) return;
     problems_.note(element.GetLineNum(),
                    fmt::format("{} '{}': its name is hard to write in an OSC address", kind, printable(name)),
@@ -101,6 +102,13 @@ class Check {
     const char* name = element.Attribute("name");
     if (!name || !*name) {
       problems_.error(element.GetLineNum(), "a <link> has no name; left out", "Write <link name=\"…\">.");
+      return;
+    }
+    if (const std::optional<std::string> fault = name_fault(name)) {
+      problems_.error(element.GetLineNum(),
+                      fmt::format("link '{}': its name can't be used: {}; left out",
+                                  printable(std::string_view(name).substr(0, kShownName)), *fault),
+                      "Give it a short, printable name.");
       return;
     }
     if (!link_names_.insert(name).second) {
@@ -116,12 +124,16 @@ class Check {
   void joint(const Element& element) {
     const char* written = element.Attribute("name");
     std::string name = written ? written : "";
-    if (name.empty()) {
+    const std::optional<std::string> fault = name_fault(name);
+    if (fault) {
       const Element* child = reader_.child(element, "child");
       const char* link = child ? child->Attribute("link") : nullptr;
-      name = fmt::format("{}_joint", link ? link : "unnamed");
-      problems_.warning(element.GetLineNum(), fmt::format("a <joint> has no name; called '{}'", printable(name)),
-                        "Write <joint name=\"…\">.");
+      name = fmt::format("{}_joint", link && !name_fault(link) ? link : "unnamed");
+      problems_.warning(element.GetLineNum(),
+                        written
+                            ? fmt::format("a <joint>'s name can't be used: {}; called '{}'", *fault, printable(name))
+                            : fmt::format("a <joint> has no name; called '{}'", printable(name)),
+                        "Write <joint name=\"…\">, short and printable.");
     }
     std::optional<UrdfJoint> read = reader_.joint(element, name);
     count_unused(element, {"origin", "parent", "child", "axis", "limit", "dynamics", "mimic"});

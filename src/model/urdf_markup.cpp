@@ -13,6 +13,9 @@ namespace limber {
 
 namespace {
 
+// parsers compare each attribute of an element with all others
+constexpr int kMostAttributes = 65;
+
 /// Walks over the mark-up and blanks what must not reach a parser.
 class Scanner {
  public:
@@ -83,6 +86,8 @@ class Scanner {
   bool tag(std::size_t open) {
     const bool closing = starts("</");
     char quote = 0;
+    int attributes = 0;
+    std::size_t too_many = std::string::npos;
     std::size_t i = open + 1;
     for (; i < text_.size() && (quote != 0 || text_[i] != '>'); ++i) {
       if (quote != 0) {
@@ -90,12 +95,14 @@ class Scanner {
       } else if (text_[i] == '"' || text_[i] == '\'') {
         quote = text_[i];
       } else if (text_[i] == '=' && !closing) {
+        if (++attributes == kMostAttributes) too_many = text_.find_last_of(" \t\r\n", i);
         i = note_bare_value(i);
       }
     }
     const bool empty = !closing && i > open + 1 && text_[i - 1] == '/';
     at_ = std::min(i + 1, text_.size());
     any_ = true;
+    if (too_many != std::string::npos) drop_attributes(too_many, empty ? i - 1 : i);
     if (i >= text_.size()) return false;
     depth_ += closing ? -1 : (empty ? 0 : 1);
     if (!closing && depth_ + (empty ? 1 : 0) > kMostUrdfDepth && deep_from_ == std::string::npos) {
@@ -104,6 +111,15 @@ class Scanner {
     }
     if (deep_from_ != std::string::npos && depth_ <= deep_depth_ && (closing || empty)) cut_deep();
     return depth_ <= 0;
+  }
+  void drop_attributes(std::size_t from, std::size_t to) {
+    if (!attributes_said_) {
+      problems_.error(line_of(text_, from),
+                      fmt::format("an element has more than {} attributes; the rest is left out", kMostAttributes - 1),
+                      "URDF needs no more than six: take the others out.");
+    }
+    attributes_said_ = true;
+    blank(from, std::max(from, to));
   }
   /// Remembers an attribute's value without quotes after the '=' at `equals`; gives where to go on.
   std::size_t note_bare_value(std::size_t equals) {
@@ -170,6 +186,7 @@ class Scanner {
   int deep_depth_ = 0;
   bool deep_said_ = false;
   bool declaration_said_ = false;
+  bool attributes_said_ = false;
   bool any_ = false;
   std::vector<std::pair<std::size_t, std::size_t>> bare_;  // values without quotes, from and to
 };

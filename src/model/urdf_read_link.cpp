@@ -11,6 +11,7 @@ namespace limber {
 
 namespace {
 
+constexpr std::size_t kMostShapes = 1000;
 constexpr NumberRange kMassRange{0, 1e7, "from 0 to 1e7 kg"};
 constexpr NumberRange kTensorRange{-1e12, 1e12, "within 1e12 kg·m²"};
 constexpr NumberRange kScaleRange{-1e6, 1e6, "within 1e6, not 0"};
@@ -27,8 +28,15 @@ UrdfLink UrdfReader::link(const Element& element, const std::string& name) {
   for (const Element* e = element.FirstChildElement(); e; e = e->NextSiblingElement()) {
     const std::string_view kind = name_of(*e);
     if (kind != "visual" && kind != "collision") continue;
+    std::vector<UrdfShape>& to = kind == "visual" ? out.visuals : out.collisions;
+    if (to.size() >= kMostShapes) {
+      problems.error(e->GetLineNum(),
+                     fmt::format("{} has more than {} <{}> elements; the rest is left out", owner, kMostShapes, kind),
+                     "Join them in one mesh.");
+      break;
+    }
     std::optional<UrdfShape> read = shape(*e, owner);
-    if (read) (kind == "visual" ? out.visuals : out.collisions).push_back(std::move(*read));
+    if (read) to.push_back(std::move(*read));
   }
   return out;
 }
