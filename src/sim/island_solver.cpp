@@ -1,10 +1,10 @@
 // IslandSolver: turns what joints plan into Bullet's solver rows, and hands the impulses back.
-#include <cstring>
-
 #include "sim/island_world.h"
 
-namespace limber {
+#include <algorithm>
+#include <cstring>
 
+namespace limber {
 void IslandSolver::convertJoints(btTypedConstraint** constraints, int count, const btContactSolverInfo& info) {
   m_tmpConstraintSizesPool.resizeNoInitialize(count);
   int rows = 0;
@@ -19,6 +19,7 @@ void IslandSolver::convertJoints(btTypedConstraint** constraints, int count, con
     rows += size.m_numConstraintRows;
   }
   m_tmpSolverNonContactConstraintPool.resizeNoInitialize(rows);
+  joints_.resizeNoInitialize(0);
   int row = 0;
   for (int i = 0; i < count; ++i) {
     const btTypedConstraint::btConstraintInfo1& size = m_tmpConstraintSizesPool[i];
@@ -57,8 +58,8 @@ void IslandSolver::convert_rows(JointConstraint& joint, btSolverConstraint* rows
 
   const btRigidBody& a = joint.getRigidBodyA();
   const btRigidBody& b = joint.getRigidBodyB();
-  const btSolverBody& solver_a = m_tmpSolverBodyPool[id_a];
-  const btSolverBody& solver_b = m_tmpSolverBodyPool[id_b];
+  btSolverBody& solver_a = m_tmpSolverBodyPool[id_a];
+  btSolverBody& solver_b = m_tmpSolverBodyPool[id_b];
   const btVector3 linear_a = solver_a.m_linearVelocity + solver_a.m_externalForceImpulse;
   const btVector3 linear_b = solver_b.m_linearVelocity + solver_b.m_externalForceImpulse;
   const btVector3 angular_a = solver_a.m_angularVelocity + solver_a.m_externalTorqueImpulse;
@@ -79,15 +80,63 @@ void IslandSolver::convert_rows(JointConstraint& joint, btSolverConstraint* rows
     const btScalar step = mobility > SIMD_EPSILON ? 1 / (mobility + row.m_cfm) : btScalar(0);
     const btScalar rate = row.m_contactNormal1.dot(linear_a) + row.m_relpos1CrossNormal.dot(angular_a) +
                           row.m_contactNormal2.dot(linear_b) + row.m_relpos2CrossNormal.dot(angular_b);
-    row.m_rhs = (row.m_rhs - rate) * step;
+    row.m_rhsPenetration = row.m_rhs - rate;  // unused in joints otherwise: what the block wants
+    row.m_rhs = row.m_rhsPenetration * step;
     row.m_jacDiagABInv = step;
     row.m_cfm *= step;
   }
+  const int blocked = joint.locked_rows() + (joint.has_bounded_row() ? 1 : 0);
+  const int first = static_cast<int>(rows - &m_tmpSolverNonContactConstraintPool[0]);
+  JointRows& entry = joints_.expandNonInitializing();
+  entry.first = first;
+  entry.scalar = count - blocked;
+  entry.body_a = id_a;
+  entry.body_b = id_b;
+  entry.block.build(rows + entry.scalar, joint.has_bounded_row(), joint.locked_rows(), solver_a.internalGetInvMass(),
+                    solver_b.internalGetInvMass());
   if (info.m_numIterations > m_maxOverrideNumSolverIterations) m_maxOverrideNumSolverIterations = info.m_numIterations;
+}
+
+// One sweep over all joints: their rows one by one, then their blocks. Returns the largest squared change of an
+// impulse, 0 when nothing moved.
+btScalar IslandSolver::sweep_joints() {
+  btScalar largest = 0;
+  for (int i = 0; i < joints_.size(); ++i) {
+    JointRows& joint = joints_[i];
+    btSolverBody& a = m_tmpSolverBodyPool[joint.body_a];
+    btSolverBody& b = m_tmpSolverBodyPool[joint.body_b];
+    PairVelocity v{lanes(a.m_deltaLinearVelocity),  lanes(a.m_deltaAngularVelocity), lanes(b.m_deltaLinearVelocity),
+                   lanes(b.m_deltaAngularVelocity), lanes(a.internalGetInvMass()),   lanes(b.internalGetInvMass())};
+    for (int r = joint.first; r < joint.first + joint.scalar; ++r) {
+      largest = std::max(largest, solve_row(m_tmpSolverNonContactConstraintPool[r], v));
+    }
+    largest = std::max(largest, joint.block.solve(v));
+    lanes(a.m_deltaLinearVelocity) = v.linear_a;
+    lanes(a.m_deltaAngularVelocity) = v.angular_a;
+    lanes(b.m_deltaLinearVelocity) = v.linear_b;
+    lanes(b.m_deltaAngularVelocity) = v.angular_b;
+  }
+  return largest;
+}
+
+btScalar IslandSolver::solveSingleIteration(int iteration, btCollisionObject** bodies, int body_count,
+                                            btPersistentManifold** manifolds, int manifold_count,
+                                            btTypedConstraint** /*constraints*/, int /*constraint_count*/,
+                                            const btContactSolverInfo& info, btIDebugDraw* drawer) {
+  const btScalar joints = sweep_joints();
+  if (m_tmpSolverContactConstraintPool.size() == 0) return joints;
+  // Bullet's own iteration does the contacts: it sees no joint rows while they are done
+  const int rows = m_tmpSolverNonContactConstraintPool.size();
+  m_tmpSolverNonContactConstraintPool.resizeNoInitialize(0);
+  const btScalar contacts = btSequentialImpulseConstraintSolver::solveSingleIteration(
+      iteration, bodies, body_count, manifolds, manifold_count, nullptr, 0, info, drawer);
+  m_tmpSolverNonContactConstraintPool.resizeNoInitialize(rows);
+  return std::max(joints, contacts);
 }
 
 btScalar IslandSolver::solveGroupCacheFriendlyFinish(btCollisionObject** bodies, int body_count,
                                                      const btContactSolverInfo& info) {
+  for (int i = 0; i < joints_.size(); ++i) joints_[i].block.finish();
   const int count = m_tmpSolverNonContactConstraintPool.size();
   for (int first = 0, last = 0; first < count; first = last) {
     auto* joint = static_cast<btTypedConstraint*>(m_tmpSolverNonContactConstraintPool[first].m_originalContactPoint);

@@ -5,6 +5,7 @@
 #include <memory>
 
 #include "sim/bullet.h"
+#include "sim/joint_block.h"
 #include "sim/joint_constraint.h"
 
 namespace limber {
@@ -24,11 +25,24 @@ class IslandSolver : public btSequentialImpulseConstraintSolver {
 
  protected:
   void convertJoints(btTypedConstraint** constraints, int count, const btContactSolverInfo& info) override;
+  btScalar solveSingleIteration(int iteration, btCollisionObject** bodies, int body_count,
+                                btPersistentManifold** manifolds, int manifold_count, btTypedConstraint** constraints,
+                                int constraint_count, const btContactSolverInfo& info, btIDebugDraw* drawer) override;
   btScalar solveGroupCacheFriendlyFinish(btCollisionObject** bodies, int body_count,
                                          const btContactSolverInfo& info) override;
 
  private:
   void convert_rows(JointConstraint& joint, btSolverConstraint* rows, int count, const btContactSolverInfo& info);
+  btScalar sweep_joints();
+
+  struct JointRows {  // of one joint: `scalar` rows from `first` on, then those of the block
+    int first;
+    int scalar;
+    int body_a;
+    int body_b;
+    JointBlock block;
+  };
+  btAlignedObjectArray<JointRows> joints_;
 };
 
 /// What a world is made of; a base of IslandWorld so that it outlives Bullet's part.

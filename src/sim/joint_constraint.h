@@ -104,6 +104,9 @@ class JointConstraint : public btTypedConstraint {
   void set_step(btScalar h) { h_ = h; }
   /// Impulses of the rows just solved, in the order in which getInfo2 wrote them.
   void take_impulses(const btSolverConstraint* rows, int count);
+  /// The rows end with one motor row (if any) and those of the locked axes; IslandSolver solves these together.
+  int locked_rows() const { return locked_rows_; }
+  bool has_bounded_row() const { return bounded_row_; }
   /// Ends a tick: averages what was applied, refreshes the readouts.
   void end_tick();
 
@@ -181,6 +184,8 @@ class JointConstraint : public btTypedConstraint {
   int middle_ = 1;
   int inner_ = 0;
   int row_count_ = 0;
+  int locked_rows_ = 0;
+  bool bounded_row_ = false;
   std::array<Row, kMaxRows> rows_;
 };
 

@@ -78,12 +78,21 @@ void JointConstraint::plan_rows() {
   for (int axis = 0; axis < 6; ++axis) {
     if (!axes_[at(axis)].locked()) plan_motion(axis);
   }
+  bounded_row_ = false;
+  for (int axis = 0; axis < 6; ++axis) {
+    const AxisSettings& s = axes_[at(axis)];
+    if (s.locked() || s.drive == AxisDrive::off || s.drive == AxisDrive::spring) continue;
+    plan_motor(axis);
+    bounded_row_ = true;
+  }
+  const int moving = row_count_;
   for (int axis = 3; axis < 6; ++axis) {
     if (axes_[at(axis)].locked()) plan_lock(axis);
   }
   for (int axis = 0; axis < 3; ++axis) {
     if (axes_[at(axis)].locked()) plan_lock(axis);
   }
+  locked_rows_ = row_count_ - moving;
   motor_impulse_.fill(0);
   repair_impulse_.fill(0);
   previous_rate_ = rate_;
@@ -107,11 +116,7 @@ void JointConstraint::plan_lock(int axis) {
 
 void JointConstraint::plan_motion(int axis) {
   const AxisSettings& s = axes_[at(axis)];
-  if (s.drive == AxisDrive::spring) {
-    plan_spring(axis);
-  } else if (s.drive != AxisDrive::off) {
-    plan_motor(axis);
-  }
+  if (s.drive == AxisDrive::spring) plan_spring(axis);
   if (damping_ > 0) add_row(axis, 0, 1 / std::max(damping_ * h_, btScalar(1e-18)), -kInfinity, kInfinity);
   if (s.friction > 0) {
     const btScalar most = s.friction * h_;
