@@ -1,6 +1,7 @@
 // ScriptHost: what a scene may ask of the outside. The engine implements it; scripts never see a socket. [sim]
 #pragma once
 
+#include <cstdio>
 #include <string_view>
 
 #include "base/message.h"
@@ -24,6 +25,12 @@ class ScriptHost {
   virtual void ask_reset() = 0;
   /// A script's fault, with file and line: log, panel, /script/error. Empty text: the file is mended.
   virtual void script_error(std::string_view file, int line, std::string_view text) = 0;
+  /// print(…): a line of text, as it is, to stdout.
+  virtual void print(std::string_view text) {
+    std::fwrite(text.data(), 1, text.size(), stdout);
+    std::fputc('\n', stdout);
+    std::fflush(stdout);
+  }
 };
 
 }  // namespace limber

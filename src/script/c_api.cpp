@@ -1,0 +1,49 @@
+// The door's table of functions, its text for LuaJIT, and a check that both sides lay the store out alike.
+#include "script/c_api.h"
+
+#include <cstddef>
+
+#include "params/store.h"
+
+namespace limber {
+
+static_assert(sizeof(LimberSlot) == sizeof(NodeSlot));
+static_assert(offsetof(LimberSlot, generation) == offsetof(NodeSlot, generation));
+static_assert(offsetof(LimberSlot, table) == offsetof(NodeSlot, table));
+static_assert(offsetof(LimberSlot, kept) == offsetof(NodeSlot, kept));
+static_assert(offsetof(LimberSlot, live) == offsetof(NodeSlot, live));
+static_assert(sizeof(LimberView) == sizeof(StoreView));
+static_assert(offsetof(LimberView, slots) == offsetof(StoreView, slots));
+static_assert(offsetof(LimberView, kept) == offsetof(StoreView, kept));
+static_assert(offsetof(LimberView, live) == offsetof(StoreView, live));
+static_assert(offsetof(LimberView, slot_count) == offsetof(StoreView, slot_count));
+
+const LimberApi& limber_api() {
+  static const LimberApi api = {
+#define LIMBER_STRUCT(...)
+#define LIMBER_CALL(result, name, arguments) &calls::name,
+#include "script/c_api.inc"
+#undef LIMBER_CALL
+#undef LIMBER_STRUCT
+  };
+  return api;
+}
+
+const std::string& limber_cdef() {
+  static const std::string text =
+#define LIMBER_STRUCT(...) #__VA_ARGS__ "\n"
+#define LIMBER_CALL(result, name, arguments)
+#include "script/c_api.inc"
+#undef LIMBER_CALL
+#undef LIMBER_STRUCT
+      "struct LimberApi {\n"
+#define LIMBER_STRUCT(...)
+#define LIMBER_CALL(result, name, arguments) #result "(*" #name ")" #arguments ";\n"
+#include "script/c_api.inc"
+#undef LIMBER_CALL
+#undef LIMBER_STRUCT
+      "};\n";
+  return text;
+}
+
+}  // namespace limber

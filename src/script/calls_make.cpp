@@ -1,0 +1,259 @@
+// Behind the door: bodies, parts, joints, motors, shapes, URDF files.
+#include <algorithm>
+#include <cmath>
+#include <mutex>
+
+#include <fmt/format.h>
+
+#include "base/log.h"
+#include "base/text.h"
+#include "model/hull.h"
+#include "model/mass_properties.h"
+#include "model/mesh_load.h"
+#include "script/context.h"
+
+namespace limber::calls {
+
+namespace {
+
+Pose pose_at(const double* v) { return {{v[0], v[1], v[2]}, glm::normalize(quat_xyzw(v[3], v[4], v[5], v[6]))}; }
+
+template <class T>
+std::int32_t made(ScriptContext& c, const Result<T*>& thing) {
+  return thing ? c.tell((*thing)->id()) : c.refuse(thing.error());
+}
+
+// where a body's root goes: NaN means "as the model places it"
+void place(BuildOptions& build, const double* pose) {
+  build.position.reset();
+  build.rotation.reset();
+  if (std::isfinite(pose[0])) build.position = Vec3(pose[0], pose[1], pose[2]);
+  if (std::isfinite(pose[3])) build.rotation = glm::normalize(quat_xyzw(pose[3], pose[4], pose[5], pose[6]));
+}
+
+// models are kept for the program's life: a reset or another scene loads the same file at no cost
+Result<std::shared_ptr<const BodyModel>> load_model(const std::string& file, const ImportOptions& options) {
+  struct Known {
+    std::string file;
+    FileStamp stamp;
+    ImportOptions options;
+    std::shared_ptr<const BodyModel> model;
+  };
+  static std::mutex mutex;
+  static std::vector<Known> known;
+  static MeshLibrary meshes;
+  const FileStamp stamp = stamp_of(file);
+  const std::scoped_lock lock(mutex);
+  for (const Known& k : known) {
+    if (k.file == file && k.stamp == stamp && k.options == options) return k.model;
+  }
+  Result<std::shared_ptr<const BodyModel>> model = import_urdf(file, options, meshes);
+  if (model) known.push_back({file, stamp, options, *model});
+  return model;
+}
+
+void say_problems(const BodyModel& model) {
+  for (const Problem& problem : model.problems) {
+    if (problem.severity == Severity::note) continue;
+    log_warning("{}:{}: {} {}", model.file, problem.line, problem.text, problem.cure);
+  }
+}
+
+// hull of points that a script gave, or of a file's mesh with another count of vertices
+std::shared_ptr<MeshModel> mesh_of_points(std::vector<Vec3> points, std::string name, int max_vertices,
+                                          double tolerance) {
+  const Hull hull = reduced_hull(points, {16, max_vertices, tolerance});
+  auto mesh = std::make_shared<MeshModel>();
+  mesh->name = std::move(name);
+  mesh->vertices = hull.vertices;
+  mesh->triangles = hull.triangles;
+  mesh->hull = hull.vertices;
+  mesh->hull_error = hull.error;
+  mesh->closed = true;
+  mesh->solid = solid_of(hull.vertices, hull.triangles);
+  return mesh;
+}
+
+Result<std::shared_ptr<const MeshModel>> mesh_of_file(const ScriptContext& c, std::string_view file, const Vec3& scale,
+                                                      int max_vertices) {
+  const Result<std::string> path = c.files.find(file);
+  if (!path) return Error{path.error()};
+  Result<std::shared_ptr<const MeshModel>> mesh = load_mesh(*path, scale);
+  if (!mesh || max_vertices == HullLimits{}.max_vertices) return mesh;
+  auto changed = std::make_shared<MeshModel>(**mesh);
+  const Hull hull = reduced_hull(changed->vertices, {std::min(16, max_vertices), max_vertices, HullLimits{}.tolerance});
+  changed->hull = hull.vertices;
+  changed->hull_error = hull.error;
+  return std::shared_ptr<const MeshModel>(std::move(changed));
+}
+
+}  // namespace
+
+std::int32_t add_body(void* c, const char* name, std::int32_t length) {
+  ScriptContext& context = context_of(c);
+  return made(context, context.world.add_body(std::string(text_of(name, length))));
+}
+
+std::int32_t copy_body(void* c, std::int32_t slot, std::int32_t generation, const char* name, std::int32_t length) {
+  ScriptContext& context = context_of(c);
+  const Body* source = thing_of<Body>(context, id_of(slot, generation));
+  if (source == nullptr) return kGone;
+  return made(context, context.world.copy_body(*source, std::string(text_of(name, length))));
+}
+
+std::int32_t remove_body(void* c, std::int32_t slot, std::int32_t generation) {
+  ScriptContext& context = context_of(c);
+  Body* body = thing_of<Body>(context, id_of(slot, generation));
+  if (body == nullptr) return kGone;
+  context.world.remove_body(*body);
+  return kOk;
+}
+
+std::int32_t add_part(void* c, std::int32_t slot, std::int32_t generation, const char* name, std::int32_t length,
+                      std::int32_t shape_slot, std::int32_t shape_generation, double mass, const double* pose) {
+  ScriptContext& context = context_of(c);
+  Body* body = thing_of<Body>(context, id_of(slot, generation));
+  Shape* shape = thing_of<Shape>(context, id_of(shape_slot, shape_generation));
+  if (body == nullptr || shape == nullptr) return kGone;
+  // a mass below zero: not said
+  const double given = mass >= 0 ? mass : shape->model().kind == ShapeKind::plane ? 0 : 1;
+  return made(context, body->add_part(std::string(text_of(name, length)), *shape, given, pose_at(pose)));
+}
+
+std::int32_t add_joint(void* c, std::int32_t slot, std::int32_t generation, const char* name, std::int32_t length,
+                       const char* type, std::int32_t type_length, std::int32_t parent_slot, std::int32_t child_slot,
+                       const double* at) {
+  ScriptContext& context = context_of(c);
+  const Store& store = context.world.store();
+  const auto part_at = [&](std::int32_t part_slot) {
+    const auto of_slot = static_cast<std::size_t>(part_slot);
+    return thing_of<Part>(context,
+                          id_of(part_slot, static_cast<std::int32_t>(store.view()->slots[of_slot].generation)));
+  };
+  Body* body = thing_of<Body>(context, id_of(slot, generation));
+  Part* parent = part_at(parent_slot);
+  Part* child = part_at(child_slot);
+  if (body == nullptr || parent == nullptr || child == nullptr) return kGone;
+  const std::string_view type_text = text_of(type, type_length);
+  const std::optional<JointType> wanted = joint_type_named(type_text);
+  if (!wanted) {
+    const std::vector<std::string> types = {"revolute", "prismatic", "spherical", "planar", "floating", "fixed"};
+    return context.refuse(fmt::format("joint '{}/{}': there is no joint type '{}'{}", body->name(),
+                                      text_of(name, length), printable(type_text), name_hint(type_text, types)));
+  }
+  return made(context, body->add_joint(std::string(text_of(name, length)), *parent, *child, *wanted,
+                                       {at[0], at[1], at[2]}, {at[3], at[4], at[5]}));
+}
+
+std::int32_t add_motor(void* c, std::int32_t slot, std::int32_t generation) {
+  ScriptContext& context = context_of(c);
+  Joint* joint = thing_of<Joint>(context, id_of(slot, generation));
+  if (joint == nullptr) return kGone;
+  return made(context, joint->body().add_motor(*joint));
+}
+
+std::int32_t add_shape(void* c, const char* name, std::int32_t length, const char* kind, const double* n) {
+  ScriptContext& context = context_of(c);
+  const std::string_view wanted(kind);
+  ShapeModel model;
+  if (wanted == "plane") {
+    model.kind = ShapeKind::plane;
+    model.normal = {n[0], n[1], n[2]};
+  } else if (wanted == "box") {
+    model.kind = ShapeKind::box;
+    model.size = {n[0], n[1], n[2]};
+  } else if (wanted == "compound") {
+    model.kind = ShapeKind::compound;
+  } else {
+    model.kind = wanted == "sphere"     ? ShapeKind::sphere
+                 : wanted == "cylinder" ? ShapeKind::cylinder
+                 : wanted == "capsule"  ? ShapeKind::capsule
+                                        : ShapeKind::cone;
+    model.radius = n[0];
+    model.height = n[1];
+  }
+  return made(context, context.world.add_shape(std::string(text_of(name, length)), std::move(model)));
+}
+
+std::int32_t add_child(void* c, std::int32_t slot, std::int32_t generation, std::int32_t child_slot,
+                       std::int32_t child_generation, const double* pose) {
+  ScriptContext& context = context_of(c);
+  Shape* shape = thing_of<Shape>(context, id_of(slot, generation));
+  const Shape* child = thing_of<Shape>(context, id_of(child_slot, child_generation));
+  if (shape == nullptr || child == nullptr) return kGone;
+  const Result<void> done = shape->add_child(*child, pose_at(pose));
+  return done ? kOk : context.refuse(done.error());
+}
+
+void mesh_clear(void* c) { context_of(c).mesh_points.clear(); }
+
+void mesh_point(void* c, double x, double y, double z) { context_of(c).mesh_points.emplace_back(x, y, z); }
+
+std::int32_t add_mesh_shape(void* c, const char* name, std::int32_t length, const char* file, std::int32_t file_length,
+                            double sx, double sy, double sz, std::int32_t max_vertices) {
+  ScriptContext& context = context_of(c);
+  const Vec3 scale(sx, sy, sz);
+  ShapeModel model;
+  model.kind = ShapeKind::mesh;
+  if (file_length > 0) {
+    const auto mesh = mesh_of_file(context, text_of(file, file_length), scale, max_vertices);
+    if (!mesh) return context.refuse(mesh.error());
+    model.mesh = *mesh;
+  } else {
+    std::vector<Vec3> points = context.mesh_points;
+    for (Vec3& point : points) point *= scale;
+    model.mesh = mesh_of_points(std::move(points), std::string(text_of(name, length)), max_vertices, 0);
+  }
+  return made(context, context.world.add_shape(std::string(text_of(name, length)), std::move(model)));
+}
+
+void urdf_clear(void* c) {
+  ScriptContext& context = context_of(c);
+  context.import = {};
+  context.import.package_paths = context.options.package_paths;
+  context.build = {};
+}
+
+void urdf_flag(void* c, std::int32_t which, std::int32_t on) {
+  ScriptContext& context = context_of(c);
+  if (which == 0) context.import.fixed_base = on != 0;
+  if (which == 1) context.import.keep_fixed = on != 0;
+  if (which == 2) context.build.servo_motors = on != 0;
+}
+
+void urdf_pose(void* c, const char* joint, std::int32_t length, double value) {
+  context_of(c).import.pose[std::string(text_of(joint, length))] = value;
+}
+
+void urdf_package_path(void* c, const char* path, std::int32_t length) {
+  context_of(c).import.package_paths.emplace_back(text_of(path, length));
+}
+
+std::int32_t load_urdf(void* c, const char* path, std::int32_t path_length, const char* name, std::int32_t length,
+                       const double* pose) {
+  ScriptContext& context = context_of(c);
+  const Result<std::string> file = context.files.find(text_of(path, path_length));
+  if (!file) return context.refuse(file.error());
+  const bool known = context.loaded_files.contains(*file);
+  if (!known && context.answer.top_level == 0) {
+    return context.refuse(fmt::format(
+        "'{}' was not loaded when the scene ran; a callback must not wait for a disk, so load it once at the top level",
+        text_of(path, path_length)));
+  }
+  const Result<std::shared_ptr<const BodyModel>> model = load_model(*file, context.import);
+  if (!model) return context.refuse(model.error());
+  for (const auto& [joint, value] : context.import.pose) {
+    std::vector<std::string> names;
+    for (const FileJoint& each : (*model)->file_joints) names.push_back(each.name);
+    if (std::find(names.begin(), names.end(), joint) != names.end()) continue;
+    return context.refuse(fmt::format("'{}' has no joint '{}' to pose{}", text_of(path, path_length), printable(joint),
+                                      name_hint(joint, names)));
+  }
+  if (!known) say_problems(**model);
+  context.loaded_files[*file] = true;
+  place(context.build, pose);
+  const std::string body_name = length > 0 ? std::string(text_of(name, length)) : (*model)->name;
+  return made(context, context.world.add_body(*model, body_name, context.build));
+}
+
+}  // namespace limber::calls

@@ -1,0 +1,144 @@
+// Behind the door: OSC patterns, messages on their way out, ports that a scene declares.
+#include <fmt/format.h>
+
+#include "base/text.h"
+#include "script/context.h"
+
+namespace limber::calls {
+
+namespace {
+
+// address against pattern, name by name; an empty name in the pattern (`//`) stands for any depth
+bool pieces_match(std::span<const std::string_view> pattern, std::span<const std::string_view> address, int& budget) {
+  if (--budget < 0) return false;
+  if (pattern.empty()) return address.empty();
+  if (pattern.front().empty()) {
+    for (std::size_t skip = 0; skip <= address.size(); skip++) {
+      if (pieces_match(pattern.subspan(1), address.subspan(skip), budget)) return true;
+    }
+    return false;
+  }
+  return !address.empty() && pattern_match(pattern.front(), address.front()) &&
+         pieces_match(pattern.subspan(1), address.subspan(1), budget);
+}
+
+bool address_matches(std::string_view pattern, std::string_view address) {
+  if (pattern.empty() || address.empty()) return false;
+  const auto pattern_pieces = split(pattern.substr(1), '/');
+  const auto address_pieces = split(address.substr(1), '/');
+  int budget = 2000;
+  return pieces_match(pattern_pieces, address_pieces, budget);
+}
+
+// "127.0.0.1:9000" as an IPv4 address in host order and a port
+struct HostPort {
+  std::string host;
+  std::uint32_t ip = 0;  // 0: the host is a name
+  std::uint16_t port = 0;
+};
+
+std::optional<std::uint32_t> ip_of(std::string_view host) {
+  if (host == "localhost") return 0x7f000001u;
+  const auto bytes = split(host, '.');
+  if (bytes.size() != 4) return {};
+  std::uint32_t ip = 0;
+  for (const std::string_view byte : bytes) {
+    if (byte.empty() || byte.size() > 3 || byte.find_first_not_of("0123456789") != std::string_view::npos) return {};
+    const double value = parse_number(byte).value_or(256);
+    if (value > 255) return {};
+    ip = ip << 8u | static_cast<std::uint32_t>(value);
+  }
+  return ip;
+}
+
+Result<HostPort> host_port(std::string_view text) {
+  const std::size_t colon = text.rfind(':');
+  const std::string_view digits = colon == std::string_view::npos ? std::string_view() : text.substr(colon + 1);
+  const bool whole = !digits.empty() && digits.find_first_not_of("0123456789") == std::string_view::npos;
+  const double port = whole ? parse_number(digits).value_or(0) : 0;
+  if (port < 1 || port > 65535 || colon == 0 || printable(text) != text) {
+    return Error{fmt::format("'{}' is no address; write \"host:port\", such as \"127.0.0.1:9000\"", printable(text))};
+  }
+  const std::string_view host = text.substr(0, colon);
+  return HostPort{std::string(host), ip_of(host).value_or(0), static_cast<std::uint16_t>(port)};
+}
+
+}  // namespace
+
+std::int32_t osc_matches(void*, const char* pattern, std::int32_t pattern_length, const char* address,
+                         std::int32_t length) {
+  const std::string_view a = text_of(pattern, pattern_length);
+  const std::string_view b = text_of(address, length);
+  if (a == b) return 1;
+  // the handler may be a pattern, and so may what comes in
+  return address_matches(a, b) || address_matches(b, a) ? 1 : 0;
+}
+
+void message_begin(void* c, const char* address, std::int32_t length) {
+  context_of(c).message = {std::string(text_of(address, length)), {}};
+}
+
+void message_number(void* c, double x) { context_of(c).message.args.push_back(Arg::of(x)); }
+
+void message_flag(void* c, std::int32_t on) { context_of(c).message.args.push_back(Arg::of(on != 0)); }
+
+void message_text(void* c, const char* text, std::int32_t length) {
+  context_of(c).message.args.push_back(Arg::of(text_of(text, length)));
+}
+
+std::int32_t message_send(void* c, std::int32_t way, double ip, std::int32_t port) {
+  ScriptContext& context = context_of(c);
+  if (way == 0) {
+    context.host.send(std::move(context.message));
+  } else if (way == 1) {
+    if (!context.handling_message) {
+      return context.refuse("osc:reply answers the message that is being handled: call it inside an osc:on function");
+    }
+    context.host.reply(context.sender, std::move(context.message));
+  } else {
+    const Origin to{Hand::osc, static_cast<std::uint32_t>(ip), static_cast<std::uint16_t>(port)};
+    context.host.send_direct(to, std::move(context.message));
+  }
+  return kOk;
+}
+
+std::int32_t osc_address(void* c, const char* text, std::int32_t length) {
+  ScriptContext& context = context_of(c);
+  const Result<HostPort> parsed = host_port(text_of(text, length));
+  if (!parsed) return context.refuse(parsed.error());
+  if (parsed->ip == 0) {
+    return context.refuse(fmt::format(
+        "'{}' is a name, and a script must not wait for a name server; write the address in numbers", parsed->host));
+  }
+  context.answer.number[0] = parsed->ip;
+  context.answer.number[1] = parsed->port;
+  return kOk;
+}
+
+void osc_handlers(void* c, std::int32_t count) { context_of(c).handlers = count; }
+
+void osc_listen(void* c, std::int32_t port) {
+  context_of(c).plan.listen.push_back({"127.0.0.1", static_cast<std::uint16_t>(port)});
+}
+
+std::int32_t osc_target(void* c, const char* address, std::int32_t length, double rate, std::int32_t streams,
+                        const char* bodies, std::int32_t bodies_length, std::int32_t bundle, std::int32_t errors) {
+  ScriptContext& context = context_of(c);
+  const Result<HostPort> parsed = host_port(text_of(address, length));
+  if (!parsed) return context.refuse(parsed.error());
+  StreamTarget target;
+  target.host = parsed->host;
+  target.port = parsed->port;
+  target.rate = rate;
+  target.pos = (streams & 1) != 0;
+  target.rot = (streams & 2) != 0;
+  target.relrot = (streams & 4) != 0;
+  target.relpos = (streams & 8) != 0;
+  target.bodies = std::string(text_of(bodies, bodies_length));
+  target.bundle = bundle;
+  target.errors = errors != 0;
+  context.plan.targets.push_back(std::move(target));
+  return kOk;
+}
+
+}  // namespace limber::calls

@@ -1,0 +1,168 @@
+// Behind the door: names of things, what belongs to what, lists in stream order.
+#include <algorithm>
+
+#include <fmt/format.h>
+
+#include "base/text.h"
+#include "script/context.h"
+
+namespace limber::calls {
+
+namespace {
+
+enum Kind : std::int32_t { bodies, parts, joints, motors, shapes };
+
+// the i-th of a span of owned things, or a null id behind the end; the count when i is -1
+template <class T>
+std::int32_t item(ScriptContext& c, std::span<const std::unique_ptr<T>> list, std::int32_t i) {
+  if (i < 0) return static_cast<std::int32_t>(list.size());
+  const auto at = static_cast<std::size_t>(i);
+  return c.tell(at < list.size() ? list[at]->id() : NodeId{});
+}
+
+std::int32_t list_at(ScriptContext& c, NodeId id, std::int32_t kind, std::int32_t i) {
+  if (kind == bodies) return item(c, c.world.bodies(), i);
+  if (kind == shapes) return item(c, c.world.shapes(), i);
+  const Body* body = thing_of<Body>(c, id);
+  if (body == nullptr) return kGone;
+  if (kind == parts) return item(c, body->parts(), i);
+  if (kind == joints) return item(c, body->joints(), i);
+  return item(c, body->motors(), i);
+}
+
+template <class T>
+std::int32_t found(ScriptContext& c, const T* thing, std::span<const std::unique_ptr<T>> list, std::string_view kind,
+                   std::string_view where, std::string_view name) {
+  if (thing != nullptr) return c.tell(thing->id());
+  std::vector<std::string_view> names;
+  for (const auto& each : list) names.push_back(each->name());
+  return c.refuse(fmt::format("{} no {} '{}'{}", where, kind, printable(name), name_hint(name, names)));
+}
+
+template <class T>
+std::size_t place_in(std::span<const std::unique_ptr<T>> list, const T* thing) {
+  const auto at = std::find_if(list.begin(), list.end(), [&](const auto& each) { return each.get() == thing; });
+  return static_cast<std::size_t>(at - list.begin());
+}
+
+}  // namespace
+
+std::int32_t structure(void* c) { return static_cast<std::int32_t>(context_of(c).world.store().structure_version()); }
+
+std::int32_t name(void* c, std::int32_t slot, std::int32_t generation) {
+  ScriptContext& context = context_of(c);
+  const NodeId id = id_of(slot, generation);
+  if (!context.alive(id)) return kGone;
+  return context.say(context.world.store().name(id));
+}
+
+std::int32_t owner(void* c, std::int32_t slot, std::int32_t generation) {
+  ScriptContext& context = context_of(c);
+  const NodeId id = id_of(slot, generation);
+  const Body* body = nullptr;
+  if (const Part* part = thing_of<Part>(context, id)) body = &part->body();
+  if (const Joint* joint = thing_of<Joint>(context, id)) body = &joint->body();
+  if (const Motor* motor = thing_of<Motor>(context, id)) body = &motor->joint().body();
+  return context.tell(body == nullptr ? NodeId{} : body->id());
+}
+
+std::int32_t related(void* c, std::int32_t slot, std::int32_t generation, std::int32_t which) {
+  ScriptContext& context = context_of(c);
+  const NodeId id = id_of(slot, generation);
+  if (!context.alive(id)) return kGone;
+  if (const Joint* joint = thing_of<Joint>(context, id)) {
+    if (which == 0) return context.tell(joint->parent().id());
+    if (which == 1) return context.tell(joint->child().id());
+    return context.tell(joint->motor() == nullptr ? NodeId{} : joint->motor()->id());
+  }
+  if (const Motor* motor = thing_of<Motor>(context, id)) return context.tell(motor->joint().id());
+  if (const Part* part = thing_of<Part>(context, id)) return context.tell(part->shape());
+  const Body* body = thing_of<Body>(context, id);
+  return context.tell(body == nullptr || body->root() == nullptr ? NodeId{} : body->root()->id());
+}
+
+std::int32_t list_count(void* c, std::int32_t slot, std::int32_t generation, std::int32_t kind) {
+  return list_at(context_of(c), id_of(slot, generation), kind, -1);
+}
+
+std::int32_t list_item(void* c, std::int32_t slot, std::int32_t generation, std::int32_t kind, std::int32_t index) {
+  return list_at(context_of(c), id_of(slot, generation), kind, index);
+}
+
+std::int32_t find(void* c, std::int32_t slot, std::int32_t generation, std::int32_t kind, const char* name,
+                  std::int32_t length) {
+  ScriptContext& context = context_of(c);
+  const World& world = context.world;
+  const std::string_view wanted = text_of(name, length);
+  if (kind == bodies) return found(context, world.find_body(wanted), world.bodies(), "body", "there is", wanted);
+  if (kind == shapes) return found(context, world.find_shape(wanted), world.shapes(), "shape", "there is", wanted);
+  const Body* body = thing_of<Body>(context, id_of(slot, generation));
+  if (body == nullptr) return kGone;
+  // texts are made only when they are needed: a look-up in every tick must not allocate
+  const auto in_body = [&](auto* thing, auto list, std::string_view kind_name) {
+    if (thing != nullptr) return context.tell(thing->id());
+    return found(context, thing, list, kind_name, fmt::format("body '{}' has", body->name()), wanted);
+  };
+  if (kind == parts) return in_body(body->find_part(wanted), body->parts(), "part");
+  if (kind == joints) return in_body(body->find_joint(wanted), body->joints(), "joint");
+  return in_body(body->find_motor(wanted), body->motors(), "motor");
+}
+
+double order(void* c, std::int32_t slot, std::int32_t generation) {
+  // bodies first to last, within a body itself, its parts, joints, motors; then shapes; the gone ones last
+  const ScriptContext& context = context_of(c);
+  const World& world = context.world;
+  const NodeId id = id_of(slot, generation);
+  constexpr double kBody = 0x1p26;
+  constexpr double kKind = 0x1p23;
+  constexpr double kShapes = 0x1p52;
+  const auto within = [&](const Body& body, double kind, std::size_t at) {
+    return kBody * static_cast<double>(1 + place_in(world.bodies(), &body)) + kKind * kind + static_cast<double>(at);
+  };
+  if (const Body* body = thing_of<Body>(context, id)) return within(*body, 0, 0);
+  if (const Part* part = thing_of<Part>(context, id)) {
+    return within(part->body(), 1, place_in(part->body().parts(), part));
+  }
+  if (const Joint* joint = thing_of<Joint>(context, id)) {
+    return within(joint->body(), 2, place_in(joint->body().joints(), joint));
+  }
+  if (const Motor* motor = thing_of<Motor>(context, id)) {
+    const Body& body = motor->joint().body();
+    return within(body, 3, place_in(body.motors(), motor));
+  }
+  if (const Shape* shape = thing_of<Shape>(context, id)) {
+    return kShapes + static_cast<double>(place_in(world.shapes(), shape));
+  }
+  return context.alive(id) ? 0 : kShapes * 1.5 + static_cast<double>(slot);
+}
+
+std::int32_t joint_type(void* c, std::int32_t slot, std::int32_t generation) {
+  ScriptContext& context = context_of(c);
+  const Joint* joint = thing_of<Joint>(context, id_of(slot, generation));
+  if (joint == nullptr) return kGone;
+  return context.say(std::string(joint_type_name(joint->type())));
+}
+
+std::int32_t link_pose(void* c, std::int32_t slot, std::int32_t generation, const char* name, std::int32_t length) {
+  ScriptContext& context = context_of(c);
+  const Body* body = thing_of<Body>(context, id_of(slot, generation));
+  if (body == nullptr) return kGone;
+  const Result<Pose> pose = body->link_pose(text_of(name, length));
+  if (!pose) return context.refuse(pose.error());
+  const double values[] = {pose->position.x, pose->position.y, pose->position.z, pose->rotation.x,
+                           pose->rotation.y, pose->rotation.z, pose->rotation.w};
+  std::copy(std::begin(values), std::end(values), context.answer.number);
+  return kOk;
+}
+
+std::int32_t state_hash(void* c, std::int32_t slot, std::int32_t generation) {
+  ScriptContext& context = context_of(c);
+  const NodeId id = id_of(slot, generation);
+  if (!context.alive(id)) return kGone;
+  if (const Body* body = thing_of<Body>(context, id)) {
+    return context.say(fmt::format("{:016x}", body->state_hash(hash_bytes("limber"))));
+  }
+  return context.say(fmt::format("{:016x}", context.hash(context.world.state_hash())));
+}
+
+}  // namespace limber::calls

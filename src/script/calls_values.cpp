@@ -1,0 +1,178 @@
+// Behind the door: rows of classes, reading and writing values, actions.
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include "base/text.h"
+#include "script/context.h"
+
+namespace limber::calls {
+
+namespace {
+
+const Table& numbered(const ScriptContext& c, std::int32_t table) {
+  return *c.world.store().tables()[static_cast<std::size_t>(table)];
+}
+
+const Row& row_of(const ScriptContext& c, NodeId id, std::int32_t row) {
+  return c.world.store().table(id).row(static_cast<std::uint32_t>(row));
+}
+
+std::string range_text(const Row& row) {
+  return fmt::format("{} .. {}{}{}", number_text(row.min), number_text(row.max), row.unit.empty() ? "" : " ", row.unit);
+}
+
+std::string values_text(std::span<const double> values) {
+  std::string text;
+  for (const double v : values) text += (text.empty() ? "" : ", ") + number_text(v);
+  return text;
+}
+
+// what every write goes through
+std::int32_t write(ScriptContext& c, NodeId id, const Row& row, std::span<const double> values) {
+  if (std::any_of(values.begin(), values.end(), [](double v) { return !std::isfinite(v); })) {
+    return c.refuse(
+        fmt::format("{}: '{}' takes finite numbers, not {}", label_of(c, id), row.name, values_text(values)));
+  }
+  Store& store = c.world.store();
+  // the command line's seed wins over the scene's
+  if (c.options.seed && c.answer.top_level != 0 && id == c.world.id() && row.name == "seed") return kOk;
+  const Result<SetOutcome> outcome = store.set(id, row, values);
+  if (!outcome) return c.refuse(outcome.error());
+  if (!outcome->clamped) return kOk;
+  c.say(fmt::format("{}: '{}' takes {}; {} is outside and was clamped", label_of(c, id), row.name, range_text(row),
+                    values_text(values)));
+  return kClamped;
+}
+
+// which of a row's three numbers the own axis of a joint or motor is; -1: none
+int own_index(const ScriptContext& c, NodeId id, const Row& row) {
+  const Joint* joint = thing_of<Joint>(c, id);
+  if (const Motor* motor = thing_of<Motor>(c, id)) joint = &motor->joint();
+  if (joint == nullptr || joint->own_axis() < 0) return -1;
+  const bool linear_row = row.name.find("linear") != std::string::npos;
+  return linear_row == (joint->own_axis() < 3) ? joint->own_axis() % 3 : -1;
+}
+
+}  // namespace
+
+const LimberView* view(void* c) { return reinterpret_cast<const LimberView*>(context_of(c).world.store().view()); }
+
+const LimberAnswer* answer(void* c) { return &context_of(c).answer; }
+
+std::int32_t class_table(void* c, std::int32_t which) {
+  const Table* const tables[] = {&World::table(), &Body::table(),  &Part::table(),
+                                 &Joint::table(), &Motor::table(), &Shape::table()};
+  return static_cast<std::int32_t>(context_of(c).world.store().table_number(*tables[which]));
+}
+
+std::int32_t row_count(void* c, std::int32_t table) {
+  return static_cast<std::int32_t>(numbered(context_of(c), table).rows().size());
+}
+
+const LimberRow* row(void* c, std::int32_t table, std::int32_t index) {
+  ScriptContext& context = context_of(c);
+  const Row& r = numbered(context, table).row(static_cast<std::uint32_t>(index));
+  const auto number = [](auto v) { return static_cast<std::int32_t>(v); };
+  context.row = {r.name.data(),      number(r.name.size()), number(r.type),          number(r.kind), r.live,
+                 r.view(),           number(r.offset),      number(r.width),         r.own_axis,     r.writable(),
+                 number(r.min_args), number(r.max_args),    number(r.choices.size())};
+  return &context.row;
+}
+
+std::int32_t row_choice(void* c, std::int32_t table, std::int32_t index, std::int32_t choice) {
+  ScriptContext& context = context_of(c);
+  return context.say(
+      numbered(context, table).row(static_cast<std::uint32_t>(index)).choices[static_cast<std::size_t>(choice)]);
+}
+
+std::int32_t get(void* c, std::int32_t slot, std::int32_t generation, std::int32_t row) {
+  ScriptContext& context = context_of(c);
+  const NodeId id = id_of(slot, generation);
+  if (!context.alive(id)) return kGone;
+  context.world.store().get(id, row_of(context, id, row), context.answer.number);
+  return kOk;
+}
+
+std::int32_t set1(void* c, std::int32_t slot, std::int32_t generation, std::int32_t row, double x) {
+  ScriptContext& context = context_of(c);
+  const NodeId id = id_of(slot, generation);
+  if (!context.alive(id)) return kGone;
+  return write(context, id, row_of(context, id, row), {&x, 1});
+}
+
+std::int32_t set3(void* c, std::int32_t slot, std::int32_t generation, std::int32_t row, double x, double y, double z) {
+  ScriptContext& context = context_of(c);
+  const NodeId id = id_of(slot, generation);
+  if (!context.alive(id)) return kGone;
+  const double values[] = {x, y, z};
+  return write(context, id, row_of(context, id, row), values);
+}
+
+std::int32_t set4(void* c, std::int32_t slot, std::int32_t generation, std::int32_t row, double x, double y, double z,
+                  double w) {
+  ScriptContext& context = context_of(c);
+  const NodeId id = id_of(slot, generation);
+  if (!context.alive(id)) return kGone;
+  const double values[] = {x, y, z, w};
+  return write(context, id, row_of(context, id, row), values);
+}
+
+std::int32_t set_own(void* c, std::int32_t slot, std::int32_t generation, std::int32_t row, double x) {
+  ScriptContext& context = context_of(c);
+  const NodeId id = id_of(slot, generation);
+  if (!context.alive(id)) return kGone;
+  const Row& r = row_of(context, id, row);
+  const int own = own_index(context, id, r);
+  if (own < 0) {
+    return context.refuse(
+        fmt::format("{}: one number for '{}' means the own axis, which this joint does not have "
+                    "among these three; give a vec3",
+                    label_of(context, id), r.name));
+  }
+  std::array<double, 4> values{};
+  context.world.store().get(id, r, values.data());
+  values[static_cast<std::size_t>(own)] = x;
+  return write(context, id, r, {values.data(), 3});
+}
+
+std::int32_t set_choice(void* c, std::int32_t slot, std::int32_t generation, std::int32_t row, const char* text,
+                        std::int32_t length) {
+  ScriptContext& context = context_of(c);
+  const NodeId id = id_of(slot, generation);
+  if (!context.alive(id)) return kGone;
+  const Row& r = row_of(context, id, row);
+  const std::string_view wanted = text_of(text, length);
+  for (std::size_t i = 0; i < r.choices.size(); i++) {
+    const auto value = static_cast<double>(i);
+    if (same_name(r.choices[i], wanted)) return write(context, id, r, {&value, 1});
+  }
+  return context.refuse(fmt::format("{}: '{}' can't be '{}'{}", label_of(context, id), r.name, printable(wanted),
+                                    name_hint(wanted, r.choices)));
+}
+
+std::int32_t act(void* c, std::int32_t slot, std::int32_t generation, std::int32_t row, const double* numbers,
+                 std::int32_t count) {
+  ScriptContext& context = context_of(c);
+  const NodeId id = id_of(slot, generation);
+  if (!context.alive(id)) return kGone;
+  const Row& r = row_of(context, id, row);
+  const std::span<const double> args(numbers, static_cast<std::size_t>(count));
+  if (args.size() < r.min_args || args.size() > r.max_args) {
+    const std::string takes =
+        r.min_args == r.max_args ? fmt::format("{}", r.min_args) : fmt::format("{} or {}", r.min_args, r.max_args);
+    return context.refuse(fmt::format("{}: '{}' takes {} numbers (a vec3 is three), not {}", label_of(context, id),
+                                      r.name, takes, args.size()));
+  }
+  if (std::any_of(args.begin(), args.end(), [](double v) { return !std::isfinite(v); })) {
+    return context.refuse(
+        fmt::format("{}: '{}' takes finite numbers, not {}", label_of(context, id), r.name, values_text(args)));
+  }
+  const Result<void> done = r.act(context.world.store().thing(id), args);
+  if (!done) return context.refuse(fmt::format("{}: '{}' {}", label_of(context, id), r.name, done.error()));
+  return kOk;
+}
+
+}  // namespace limber::calls

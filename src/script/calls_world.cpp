@@ -1,0 +1,140 @@
+// Behind the door: texts and names, randomness, contacts, a scene's parameters, errors on their way out.
+#include <algorithm>
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include "base/log.h"
+#include "base/text.h"
+#include "params/units.h"
+#include "script/context.h"
+#include "script/noise.h"
+
+namespace limber::calls {
+
+std::int32_t hint(void* c, const char* written, std::int32_t length, const char* names, std::int32_t names_length) {
+  std::vector<std::string_view> list;
+  if (names_length > 0) list = split(text_of(names, names_length), '\n');
+  return context_of(c).say(name_hint(printable(text_of(written, length)), list));
+}
+
+std::int32_t is_pattern(void*, const char* text, std::int32_t length) {
+  return limber::is_pattern(text_of(text, length)) ? 1 : 0;
+}
+
+std::int32_t matches(void*, const char* pattern, std::int32_t pattern_length, const char* name, std::int32_t length) {
+  return pattern_match(text_of(pattern, pattern_length), text_of(name, length)) ? 1 : 0;
+}
+
+void print(void* c, const char* text, std::int32_t length) { context_of(c).host.print(text_of(text, length)); }
+
+void warn(void*, const char* text, std::int32_t length) { log_line(LogLevel::warning, text_of(text, length)); }
+
+void script_error(void* c, const char* file, std::int32_t file_length, std::int32_t line, const char* text,
+                  std::int32_t length) {
+  context_of(c).host.script_error(text_of(file, file_length), line, text_of(text, length));
+}
+
+std::int32_t read_lib(void* c, const char* name, std::int32_t length) {
+  ScriptContext& context = context_of(c);
+  const Result<std::string> file = context.files.find_lib(text_of(name, length));
+  if (!file) return context.refuse(file.error());
+  Result<std::string> text = read_script(*file);
+  if (!text) return context.refuse(text.error());
+  // the name that errors show, a line of its own, then the text
+  return context.say(context.files.shown(*file) + "\n" + *text);
+}
+
+double random_uniform(void* c) { return context_of(c).generator().uniform(); }
+
+double random_normal(void* c) { return context_of(c).generator().normal(); }
+
+std::int32_t random_direction(void* c) {
+  ScriptContext& context = context_of(c);
+  const Vec3 v = context.generator().direction();
+  for (int i = 0; i < 3; i++) context.answer.number[i] = v[i];
+  return kOk;
+}
+
+double noise(void*, double x, double y, double z) { return gradient_noise(x, y, z); }
+
+std::int32_t contact(void* c, std::int32_t index) {
+  ScriptContext& context = context_of(c);
+  const std::span<const ContactEvent> list = context.world.contacts();
+  if (index >= static_cast<std::int32_t>(list.size())) return kRefused;
+  const ContactEvent& event = list[static_cast<std::size_t>(index)];
+  // a callback before may have removed one of the two
+  if (!context.alive(event.part) || !context.alive(event.other)) return kGone;
+  const auto word = [](std::uint32_t v) { return static_cast<double>(v); };
+  const double numbers[] = {event.impulse,          event.position.x,
+                            event.position.y,       event.position.z,
+                            word(event.part.slot),  word(event.part.generation),
+                            word(event.other.slot), word(event.other.generation)};
+  std::copy(std::begin(numbers), std::end(numbers), context.answer.number);
+  return kOk;
+}
+
+void ask_reset(void* c) { context_of(c).host.ask_reset(); }
+
+std::int32_t param_row(void* c, const char* name, std::int32_t length, std::int32_t type, const double* initial,
+                       const double* low, const double* high) {
+  ScriptContext& context = context_of(c);
+  const std::string_view wanted = text_of(name, length);
+  if (context.param_rows.size() >= 64) return context.refuse("params: a scene may have 64 parameters");
+  for (const Row& other : context.param_rows) {
+    if (same_name(other.name, wanted)) {
+      return context.refuse(fmt::format("params: '{}' and '{}' are the same name (case and underscores don't count)",
+                                        other.name, printable(wanted)));
+    }
+  }
+  Row row;
+  row.name = std::string(wanted);
+  row.type = static_cast<RowType>(type);
+  const std::size_t width = width_of(row.type);
+  for (std::size_t i = 0; i < width; i++) {
+    if (!(low[i] <= high[i])) return context.refuse(fmt::format("params: '{}' has a min above its max", wanted));
+    row.initial[i] = std::clamp(initial[i], low[i], high[i]);
+  }
+  row.min = *std::min_element(low, low + width);
+  row.max = *std::max_element(high, high + width);
+  const auto wide = [&](const double* v) { return width == 3 ? Vec3(v[0], v[1], v[2]) : Vec3(v[0]); };
+  context.param_ranges.push_back({wide(low), wide(high)});
+  context.param_rows.push_back(std::move(row));
+  return kOk;
+}
+
+void param_doc(void* c, const char* text, std::int32_t length) {
+  context_of(c).param_rows.back().doc = printable(text_of(text, length));
+}
+
+std::int32_t param_unit(void* c, const char* text, std::int32_t length) {
+  ScriptContext& context = context_of(c);
+  const std::string_view unit = text_of(text, length);
+  if (!known_unit(unit)) {
+    std::vector<std::string_view> known;
+    for (const Unit& each : units()) known.push_back(each.symbol);
+    return context.refuse(fmt::format("params: '{}' has the unit '{}', which limber doesn't know{}",
+                                      context.param_rows.back().name, printable(unit), name_hint(unit, known)));
+  }
+  context.param_rows.back().unit = std::string(unit);
+  return kOk;
+}
+
+void param_choice(void* c, const char* text, std::int32_t length) {
+  Row& row = context_of(c).param_rows.back();
+  row.choices.emplace_back(text_of(text, length));
+  row.max = static_cast<double>(row.choices.size()) - 1;
+}
+
+std::int32_t param_done(void* c) {
+  ScriptContext& context = context_of(c);
+  context.params = std::make_unique<ParamsNode>(context.world.store(), std::move(context.param_rows),
+                                                std::move(context.param_ranges));
+  context.param_rows.clear();
+  context.param_ranges.clear();
+  context.tell(context.params->id());
+  context.answer.count = static_cast<std::int32_t>(context.world.store().table_number(context.params->table()));
+  return kOk;
+}
+
+}  // namespace limber::calls

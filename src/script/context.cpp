@@ -1,0 +1,51 @@
+// Answers, names of things, the scene's generator.
+#include "script/context.h"
+
+#include <fmt/format.h>
+
+namespace limber {
+
+std::int32_t ScriptContext::say(std::string what) {
+  text = std::move(what);
+  answer.text = text.data();
+  answer.length = static_cast<std::int32_t>(text.size());
+  return kOk;
+}
+
+std::int32_t ScriptContext::tell(NodeId id) {
+  answer.slot = static_cast<std::int32_t>(id.slot);
+  answer.generation = static_cast<std::int32_t>(id.generation);
+  answer.count = id.null() ? 0 : 1;
+  return kOk;
+}
+
+Random& ScriptContext::generator() {
+  if (seeded_with != world.seed()) {
+    seeded_with = world.seed();
+    random = Random(world.seed(), random_name);
+  }
+  return random;
+}
+
+std::uint64_t ScriptContext::hash(std::uint64_t start) {
+  const auto& words = generator().state();
+  start = hash_bytes({reinterpret_cast<const char*>(words.data()), sizeof words}, start);
+  if (params == nullptr) return start;
+  const double* kept = std::as_const(world.store()).kept_block(params->id());
+  return hash_bytes({reinterpret_cast<const char*>(kept), params->table().kept_width() * sizeof(double)}, start);
+}
+
+std::string label_of(const ScriptContext& c, NodeId id) {
+  const Store& store = c.world.store();
+  if (!store.alive(id)) return "a thing that no longer exists";
+  const Table* const table = &store.table(id);
+  if (table == &World::table()) return "sim";
+  const std::string& name = store.name(id);
+  if (table == &Body::table() || table == &Shape::table()) return fmt::format("{} '{}'", table->name(), name);
+  if (table == &Part::table() || table == &Joint::table() || table == &Motor::table()) {
+    return fmt::format("{} '{}/{}'", table->name(), store.name(store.parent(store.parent(id))), name);
+  }
+  return "params";
+}
+
+}  // namespace limber

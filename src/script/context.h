@@ -1,0 +1,84 @@
+// ScriptContext: what the functions behind the door work on; one for each scene. [sim]
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "base/random.h"
+#include "model/urdf_import.h"
+#include "script/c_api.h"
+#include "script/files.h"
+#include "script/host.h"
+#include "script/params_node.h"
+#include "script/scene_options.h"
+#include "sim/world.h"
+
+namespace limber {
+
+struct ScriptContext {
+  ScriptContext(World& w, ScriptHost& h, SceneOptions o) : world(w), host(h), options(std::move(o)) {}
+
+  World& world;
+  ScriptHost& host;
+  SceneOptions options;
+  ScriptFiles files;
+
+  LimberAnswer answer{};
+  std::string text;  ///< What `answer.text` points to.
+  LimberRow row{};
+
+  // generator of the scene's file: of the seed and the file's name, anew when the seed changes
+  std::string random_name;
+  std::optional<std::uint64_t> seeded_with;
+  Random random;
+  Random& generator();
+  /// The world's hash with the bits of the scene's generators and parameters.
+  std::uint64_t hash(std::uint64_t start);
+
+  // gathered by several calls before the one that makes something of them
+  std::vector<Vec3> mesh_points;
+  ImportOptions import;
+  BuildOptions build;
+  Message message;
+  std::vector<Row> param_rows;
+  std::vector<ParamsNode::Range> param_ranges;
+
+  std::map<std::string, bool> loaded_files;  ///< URDF files that the run loaded: callbacks may load them again.
+  OscPlan plan;
+  Origin sender;  ///< Of the message that is handled now.
+  bool handling_message = false;
+  std::int32_t handlers = 0;  ///< Registered by osc:on.
+  std::unique_ptr<ParamsNode> params;
+
+  // answers
+  std::int32_t say(std::string what);
+  std::int32_t refuse(std::string why) {
+    say(std::move(why));
+    return kRefused;
+  }
+  std::int32_t tell(NodeId id);
+  bool alive(NodeId id) const { return world.store().alive(id); }
+};
+
+inline ScriptContext& context_of(void* c) { return *static_cast<ScriptContext*>(c); }
+inline NodeId id_of(std::int32_t slot, std::int32_t generation) {
+  return {static_cast<std::uint32_t>(slot), static_cast<std::uint32_t>(generation)};
+}
+inline std::string_view text_of(const char* text, std::int32_t length) {
+  return {text, static_cast<std::size_t>(length)};
+}
+/// The thing of an id when it is alive and of that class, else null.
+template <class T>
+T* thing_of(const ScriptContext& c, NodeId id) {
+  if (!c.alive(id) || &c.world.store().table(id) != &T::table()) return nullptr;
+  return static_cast<T*>(c.world.store().thing(id));
+}
+/// How errors name a thing: "motor 'arm/joint_2'", "body 'arm'", "sim".
+std::string label_of(const ScriptContext& c, NodeId id);
+
+}  // namespace limber

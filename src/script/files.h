@@ -1,0 +1,35 @@
+// ScriptFiles: the folders around a scene, and how the files that it names are found. [any]
+#pragma once
+
+#include <string>
+#include <string_view>
+
+#include "base/result.h"
+
+namespace limber {
+
+class ScriptFiles {
+ public:
+  ScriptFiles() = default;
+  /// `scene`: the scene's file. `data_dir`: the installed data, or empty.
+  ScriptFiles(const std::string& scene, std::string data_dir);
+
+  /// The nearest folder at or above the scene's that holds `scripts/`, else the scene's own.
+  const std::string& show_folder() const { return show_; }
+  /// A path as messages show it: from the show's folder on when it lies there.
+  std::string shown(const std::string& path) const;
+  /// As given, then from the scene's folder upwards, then in the installed data. The error lists every place.
+  Result<std::string> find(std::string_view name) const;
+  /// The file of `require "a.b"`: scripts/lib/a/b.lua of the show, then of the installed data; never outside.
+  Result<std::string> find_lib(std::string_view name) const;
+
+ private:
+  std::string scene_folder_;
+  std::string show_;
+  std::string data_dir_;
+};
+
+/// A whole script. Errors: not there, not readable, above 1 MB.
+Result<std::string> read_script(const std::string& path);
+
+}  // namespace limber

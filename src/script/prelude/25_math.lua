@@ -1,0 +1,75 @@
+-- What `math` has beside Lua's own, colours, and the file's seeded generator.
+local P = ...
+local ffi, api, ctx, answer, fail = P.ffi, P.api, P.ctx, P.answer, P.fail
+local V, as_vec3, want_number, istype = P.V, P.as_vec3, P.want_number, P.ffi.istype
+
+local extra = {}
+P.math_extra = extra
+
+function extra.clamp(x, lo, hi)
+  if x < lo then return lo end
+  if x > hi then return hi end
+  return x
+end
+function extra.lerp(a, b, t) return a + (b - a) * t end
+function extra.map(x, a, b, c, d) return c + (x - a) * (d - c) / (b - a) end
+function extra.noise(x, y, z)
+  if type(x) ~= "number" or (y and type(y) ~= "number") or (z and type(z) ~= "number") then
+    fail("math.noise takes one, two or three numbers")
+  end
+  return api.noise(ctx, x, y or 0, z or 0)
+end
+function extra.random(low, high)
+  local u = api.random_uniform(ctx)
+  if low == nil then return u end
+  if high == nil then low, high = 1, low end
+  low, high = math.floor(want_number(low, "math.random")), math.floor(want_number(high, "math.random"))
+  if low > high then fail("math.random: nothing lies between %d and %d", low, high) end
+  return low + math.floor(u * (high - low + 1))
+end
+
+-- red, green, blue to hue, saturation, brightness, each 0 .. 1
+function P.rgb(r, g, b)
+  r, g, b = want_number(r, "rgb"), want_number(g, "rgb"), want_number(b, "rgb")
+  local high, low = math.max(r, g, b), math.min(r, g, b)
+  local span, hue = high - low, 0
+  if span > 0 then
+    if high == r then hue = ((g - b) / span) % 6
+    elseif high == g then hue = (b - r) / span + 2
+    else hue = (r - g) / span + 4 end
+  end
+  return V(hue / 6, high > 0 and span / high or 0, high)
+end
+
+local R = ffi.typeof("rng")
+local methods = {}
+local function check(self, what)
+  if not istype(R, self) then fail("rng.%s is a method: write rng:%s(…)", what, what) end
+end
+function methods.uniform(self, a, b)
+  check(self, "uniform")
+  if a == nil and b == nil then return api.random_uniform(ctx) end
+  a, b = a or 0, b or 1
+  if type(a) == "number" and type(b) == "number" then return a + (b - a) * api.random_uniform(ctx) end
+  local function wide(v) return type(v) == "number" and V(v, v, v) or P.want_vec3(v, "rng:uniform") end
+  local lo, hi = wide(a), wide(b)
+  local x, y = api.random_uniform(ctx), api.random_uniform(ctx)
+  return V(lo.x + (hi.x - lo.x) * x, lo.y + (hi.y - lo.y) * y, lo.z + (hi.z - lo.z) * api.random_uniform(ctx))
+end
+function methods.direction(self)
+  check(self, "direction")
+  api.random_direction(ctx)
+  return V(answer.number[0], answer.number[1], answer.number[2])
+end
+function methods.normal(self)
+  check(self, "normal")
+  return api.random_normal(ctx)
+end
+setmetatable(methods, {
+  __index = function(_, key)
+    fail("rng has no member '%s'%s", tostring(key), P.hint(key, { "uniform", "direction", "normal" }))
+  end,
+})
+ffi.metatype(R, { __index = methods, __tostring = function() return "rng" end,
+  __newindex = function() fail("rng has nothing to set") end })
+P.rng = R(1)

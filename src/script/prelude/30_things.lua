@@ -1,0 +1,316 @@
+-- Things: one handle for each node that a script has met, and its class's members, derived from the rows of its table.
+-- A stored row is read straight from the store: alive when the generation still fits, then a load.
+local P = ...
+local ffi, api, ctx, answer, view = P.ffi, P.api, P.ctx, P.answer, P.view
+local fail, describe, text = P.fail, P.describe, P.text
+local V, Q, F, istype, format = P.V, P.Q, P.F, P.ffi.istype, string.format
+
+local classes, by_table, by_ctype = {}, {}, {}
+P.classes = classes
+for i, name in ipairs { "sim", "body", "part", "joint", "motor", "shape" } do
+  local class = { name = name, ctype = ffi.typeof(name), getters = {}, setters = {}, methods = {}, rows = {} }
+  class.table = api.class_table(ctx, i - 1)
+  classes[name], by_table[class.table], by_ctype[tonumber(class.ctype)] = class, class, class
+end
+
+-- handles: one for each slot, so that a thing is always the same key of a table; names stay for the gone ones
+local handles = {}
+local names = setmetatable({}, { __mode = "k" })
+local owners = setmetatable({}, { __mode = "k" })
+P.names = names
+
+local thing
+local function intern(slot, generation)
+  local class = by_table[view.slots[slot].table]
+  local h = class.ctype(slot, generation)
+  handles[slot] = h
+  api.name(ctx, slot, generation)
+  names[h] = text()
+  api.owner(ctx, slot, generation)
+  if answer.count ~= 0 then owners[h] = thing(answer.slot, answer.generation) end
+  return h
+end
+
+-- the handle of an id
+function thing(slot, generation)
+  local h = handles[slot]
+  if h and h.generation_ == generation then return h end
+  return intern(slot, generation)
+end
+P.thing = thing
+
+-- the handle of the last answer, nil when it named nothing
+function P.answered()
+  if answer.count == 0 then return nil end
+  return thing(answer.slot, answer.generation)
+end
+
+local function class_of(value)
+  return type(value) == "cdata" and by_ctype[tonumber(ffi.typeof(value))] or nil
+end
+P.class_of = class_of
+
+local function label(h)
+  local class = class_of(h)
+  if not class or class.name == "sim" then return class and "sim" or "params" end
+  local owner = owners[h]
+  return format("%s '%s%s'", class.name, owner and names[owner] .. "/" or "", names[h])
+end
+P.label = label
+
+local function alive(h)
+  local slot = h.slot_
+  return slot >= 0 and slot < view.slot_count and view.slots[slot].generation == h.generation_
+end
+P.alive = alive
+
+local function gone(h) fail("%s no longer exists (thing.alive tells)", label(h)) end
+P.gone = gone
+
+-- the slot of a living thing
+local function slot_of(h)
+  local slot = h.slot_
+  if not (slot >= 0 and slot < view.slot_count) then gone(h) end
+  local s = view.slots[slot]
+  if s.generation ~= h.generation_ then gone(h) end
+  return s
+end
+P.slot_of = slot_of
+
+function P.check_self(h, class, method)
+  if not istype(class.ctype, h) then
+    fail("%s is a method of a %s: write it with a colon, %s:%s(…), not with a dot", method, class.name, class.name,
+      method)
+  end
+  slot_of(h)
+end
+
+-- RowType and RowKind of params/table.h, as far as they make a difference here
+local kBoolean, kChoice, kVec3, kFlags3, kQuat = 2, 3, 4, 5, 6
+local kReadout, kAction = 2, 3
+
+-- what reads a row: by its type, from the live or the kept block, or computed for a view
+local function getter_of(row)
+  local offset, live, choices, kind = row.offset, row.live, row.choices, row.type
+  local make
+  if kind == kVec3 then
+    make = function(v, i) return V(v[i], v[i + 1], v[i + 2]) end
+  elseif kind == kQuat then
+    make = function(v, i) return Q(v[i], v[i + 1], v[i + 2], v[i + 3]) end
+  elseif kind == kFlags3 then
+    make = function(v, i) return F(v[i] ~= 0, v[i + 1] ~= 0, v[i + 2] ~= 0) end
+  elseif kind == kBoolean then
+    make = function(v, i) return v[i] ~= 0 end
+  elseif kind == kChoice then
+    make = function(v, i) return choices[v[i] + 1] end
+  else
+    make = function(v, i) return v[i] end
+  end
+  if row.view then
+    local index = row.index
+    return function(h)
+      if api.get(ctx, h.slot_, h.generation_, index) ~= 0 then gone(h) end
+      return make(answer.number, 0)
+    end
+  end
+  if live then return function(h) return make(view.live, slot_of(h).live + offset) end end
+  return function(h) return make(view.kept, slot_of(h).kept + offset) end
+end
+
+local function refuse(h, row, value, takes)
+  fail("%s: '%s' takes %s, not %s", label(h), row.name, takes, describe(value))
+end
+
+local function set_three(row)
+  local index, own = row.index, row.own_axis
+  return function(h, value)
+    local code
+    if istype(V, value) then
+      code = api.set3(ctx, h.slot_, h.generation_, index, value.x, value.y, value.z)
+    elseif own and type(value) == "number" then
+      code = api.set_own(ctx, h.slot_, h.generation_, index, value)
+    else
+      local v = P.as_vec3(value) or refuse(h, row, value, own and "a vec3, or one number for the own axis" or "a vec3")
+      code = api.set3(ctx, h.slot_, h.generation_, index, v.x, v.y, v.z)
+    end
+    if code ~= 0 then P.check(code, gone, h) end
+  end
+end
+
+local function set_flags(row)
+  local index = row.index
+  local function number(h, value, flag)
+    if type(flag) ~= "boolean" then refuse(h, row, value, "three booleans, or one for all axes") end
+    return flag and 1 or 0
+  end
+  return function(h, value)
+    local x, y, z
+    if type(value) == "boolean" then
+      x, y, z = value, value, value
+    elseif istype(F, value) then
+      x, y, z = value.x, value.y, value.z
+    elseif type(value) == "table" and #value == 3 then
+      x, y, z = value[1], value[2], value[3]
+    end
+    local code = api.set3(ctx, h.slot_, h.generation_, index, number(h, value, x), number(h, value, y),
+      number(h, value, z))
+    if code ~= 0 then P.check(code, gone, h) end
+  end
+end
+
+-- what writes a row: type first, then the one door
+local function setter_of(row)
+  local index, kind = row.index, row.type
+  if kind == kVec3 then return set_three(row) end
+  if kind == kFlags3 then return set_flags(row) end
+  if kind == kQuat then
+    return function(h, q)
+      if not istype(Q, q) then refuse(h, row, q, "a quat") end
+      local code = api.set4(ctx, h.slot_, h.generation_, index, q.x, q.y, q.z, q.w)
+      if code ~= 0 then P.check(code, gone, h) end
+    end
+  elseif kind == kBoolean then
+    return function(h, value)
+      if type(value) ~= "boolean" then refuse(h, row, value, "true or false") end
+      local code = api.set1(ctx, h.slot_, h.generation_, index, value and 1 or 0)
+      if code ~= 0 then P.check(code, gone, h) end
+    end
+  elseif kind == kChoice then
+    return function(h, value)
+      if type(value) ~= "string" then refuse(h, row, value, "one of '" .. table.concat(row.choices, "' '") .. "'") end
+      local code = api.set_choice(ctx, h.slot_, h.generation_, index, value, #value)
+      if code ~= 0 then P.check(code, gone, h) end
+    end
+  end
+  return function(h, value)
+    if type(value) ~= "number" then refuse(h, row, value, "a number") end
+    local code = api.set1(ctx, h.slot_, h.generation_, index, value)
+    if code ~= 0 then P.check(code, gone, h) end
+  end
+end
+
+-- an action's method: vec3s and numbers become the row's numbers
+local numbers = ffi.new("double[16]")
+local function method_of(class, row)
+  local index, name, ctype = row.index, row.name, class.ctype
+  local function put(h, n, value)
+    if type(value) == "number" and n < 16 then
+      numbers[n] = value
+      return n + 1
+    end
+    local v = P.as_vec3(value)
+    if not v or n > 13 then fail("%s: '%s' takes vec3s, not %s", label(h), name, describe(value)) end
+    numbers[n], numbers[n + 1], numbers[n + 2] = v.x, v.y, v.z
+    return n + 3
+  end
+  return function(h, a, b, c, d, e, f)
+    if not istype(ctype, h) then P.check_self(h, class, name) end
+    if answer.top_level ~= 0 then P.needs_callback(label(h) .. ":" .. name) end
+    local n = 0
+    if istype(V, a) and b == nil then
+      numbers[0], numbers[1], numbers[2], n = a.x, a.y, a.z, 3
+    elseif a ~= nil then
+      n = put(h, n, a)
+      if b ~= nil then n = put(h, n, b) end
+      if c ~= nil then n = put(h, n, c) end
+      if d ~= nil then n = put(h, n, d) end
+      if e ~= nil then n = put(h, n, e) end
+      if f ~= nil then n = put(h, n, f) end
+    end
+    local code = api.act(ctx, h.slot_, h.generation_, index, numbers, n)
+    if code ~= 0 then P.check(code, gone, h) end
+  end
+end
+
+-- a class's members from the rows of its table
+function P.derive(class)
+  for i = 0, api.row_count(ctx, class.table) - 1 do
+    local r = api.row(ctx, class.table, i)
+    local row = { index = i, name = ffi.string(r.name, r.length), type = r.type, kind = r.kind, live = r.live ~= 0,
+      view = r.view ~= 0, offset = r.offset, own_axis = r.own_axis ~= 0, writable = r.writable ~= 0, choices = {} }
+    for c = 0, r.choices - 1 do
+      api.row_choice(ctx, class.table, i, c)
+      row.choices[c + 1] = text()
+    end
+    class.rows[row.name] = row
+    if row.kind == kAction then
+      class.methods[row.name] = method_of(class, row)
+    else
+      class.getters[row.name] = getter_of(row)
+      if row.writable then class.setters[row.name] = setter_of(row) end
+    end
+  end
+end
+
+local function member_names(class)
+  local list = {}
+  for _, members in ipairs { class.getters, class.methods } do
+    for _, key in ipairs(P.sorted_keys(members)) do list[#list + 1] = key end
+  end
+  return list
+end
+P.member_names = member_names
+
+local function no_member(h, class, key)
+  fail("%s has no property '%s'%s", label(h), tostring(key), P.hint(key, member_names(class)))
+end
+
+local function not_writable(h, class, key)
+  if class.methods[key] then fail("%s: '%s' is a method: call it with a colon, it can't be set", label(h), key) end
+  local row = class.rows[key]
+  if row and row.kind == kReadout then fail("%s: '%s' is a readout: it can be read, not set", label(h), key) end
+  if class.getters[key] then fail("%s: '%s' can be read, not set", label(h), key) end
+  no_member(h, class, key)
+end
+P.not_writable = not_writable
+
+-- gives a class's handles their behaviour, once all of its members are known
+function P.finish(class)
+  local getters, setters, methods, ctype = class.getters, class.setters, class.methods, class.ctype
+  ffi.metatype(ctype, {
+    __index = function(h, key)
+      local get = getters[key]
+      if get then return get(h) end
+      return methods[key] or no_member(h, class, key)
+    end,
+    __newindex = function(h, key, value)
+      local set = setters[key]
+      if not set then return not_writable(h, class, key) end
+      set(h, value)
+    end,
+    __eq = function(a, b)
+      return istype(ctype, a) and istype(ctype, b) and a.slot_ == b.slot_ and a.generation_ == b.generation_
+    end,
+    __tostring = label,
+    __call = function() fail("this is a %s, no function: members take a dot, only methods a colon", class.name) end,
+  })
+end
+
+-- what every thing has
+function P.common(class)
+  class.getters.alive = alive
+  class.getters.name = function(h)
+    slot_of(h)
+    return names[h]
+  end
+end
+
+-- sets what an opts table says, in a fixed order; `own` are the keys that the making itself took
+function P.check_opts(class, opts, own, what)
+  if opts == nil then return end
+  if type(opts) ~= "table" then fail("%s: opts is a table, not %s", what, describe(opts)) end
+  for key in pairs(opts) do
+    if type(key) ~= "string" or not (own[key] or class.setters[key]) then
+      local known = P.sorted_keys(own)
+      for _, name in ipairs(P.sorted_keys(class.setters)) do known[#known + 1] = name end
+      fail("%s: opts has no '%s'%s", what, tostring(key), P.hint(key, known))
+    end
+  end
+end
+function P.apply_opts(h, class, opts, own)
+  if opts == nil then return h end
+  for _, key in ipairs(P.sorted_keys(opts)) do
+    if not own[key] then class.setters[key](h, opts[key]) end
+  end
+  return h
+end

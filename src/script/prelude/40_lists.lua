@@ -1,0 +1,149 @@
+-- Lists in stream order: #arm.motors, arm.motors[1], ipairs(arm.motors), for motor in arm:motors("left_*") do.
+local P = ...
+local ffi, api, ctx, answer = P.ffi, P.api, P.ctx, P.answer
+local fail, describe, thing, alive, istype = P.fail, P.describe, P.thing, P.alive, P.ffi.istype
+
+local L = ffi.typeof("list")
+P.L = L
+local kinds = { [0] = { name = "body", list = "bodies" }, { name = "part", list = "parts" },
+  { name = "joint", list = "joints" }, { name = "motor", list = "motors" }, { name = "shape", list = "shapes" } }
+
+-- what a list holds is gathered when it is asked for and kept until the structure of the world changes
+local entries = { [0] = {}, {}, {}, {}, {} }
+
+local function gather(list, entry)
+  local slot, generation, kind = list.slot_, list.generation_, list.kind_
+  local owner = thing(slot, generation)
+  P.slot_of(owner)
+  entry.version, entry.items, entry.matched = api.structure(ctx), {}, {}
+  local count = api.list_count(ctx, slot, generation, kind)
+  if count < 0 then P.gone(owner) end
+  for i = 0, count - 1 do
+    api.list_item(ctx, slot, generation, kind, i)
+    entry.items[i + 1] = thing(answer.slot, answer.generation)
+  end
+  return entry
+end
+
+local function entry_of(list)
+  local entry = entries[list.kind_][list.slot_]
+  if entry.version == api.structure(ctx) and entry.generation == list.generation_ then return entry end
+  if entry.generation ~= list.generation_ then fail("the body of this list no longer exists") end
+  return gather(list, entry)
+end
+
+local function items_of(list) return entry_of(list).items end
+P.items_of = items_of
+
+-- the list of a thing, always the same one
+function P.list_of(owner, kind)
+  P.slot_of(owner)
+  local slot = owner.slot_
+  local entry = entries[kind][slot]
+  if not entry or entry.generation ~= owner.generation_ then
+    entry = { generation = owner.generation_, version = -1, list = L(slot, owner.generation_, kind) }
+    entries[kind][slot] = entry
+  end
+  return entry.list
+end
+
+-- the thing of a name, a number (−1: the last) or the thing itself
+function P.find_in(owner, kind, key)
+  if type(key) == "string" then
+    local code = api.find(ctx, owner.slot_, owner.generation_, kind, key, #key)
+    if code ~= 0 then P.check(code, P.gone, owner) end
+    return thing(answer.slot, answer.generation)
+  end
+  if type(key) == "number" then
+    local items = items_of(P.list_of(owner, kind))
+    local found = items[key < 0 and #items + 1 + key or key]
+    if found then return found end
+    fail("%s has %d %s; there is no %s", P.label(owner), #items, kinds[kind].list, tostring(key))
+  end
+  local class = P.class_of(key)
+  if not class or class.name ~= kinds[kind].name then
+    fail("a %s is wanted by its name or number, not %s", kinds[kind].name, describe(key))
+  end
+  P.slot_of(key)
+  if kind > 0 and kind < 4 and key.body ~= owner then fail("%s does not belong to %s", P.label(key), P.label(owner)) end
+  return key
+end
+
+-- the things that a name, a pattern, a thing, a list of these or "all" means, each once, in stream order
+local function select_from(list, entry, wanted)
+  if wanted == nil or wanted == "all" then return entry.items end
+  if type(wanted) == "string" and entry.matched[wanted] then return entry.matched[wanted] end
+  local owner, kind, chosen, result = thing(list.slot_, list.generation_), list.kind_, {}, {}
+  local function choose(one)
+    if type(one) == "string" and one == "all" then
+      for _, item in ipairs(entry.items) do chosen[item] = true end
+    elseif type(one) == "string" and api.is_pattern(ctx, one, #one) ~= 0 then
+      for _, item in ipairs(entry.items) do
+        local name = P.names[item]
+        if api.matches(ctx, one, #one, name, #name) ~= 0 then chosen[item] = true end
+      end
+    else
+      chosen[P.find_in(owner, kind, one)] = true
+    end
+  end
+  if type(wanted) == "table" then
+    for _, one in ipairs(wanted) do choose(one) end
+  else
+    choose(wanted)
+  end
+  for _, item in ipairs(entry.items) do
+    if chosen[item] then result[#result + 1] = item end
+  end
+  if type(wanted) == "string" then entry.matched[wanted] = result end
+  return result
+end
+
+-- one step of a walk: what has gone meanwhile is passed over
+local function step(walk)
+  local i, items = walk.i, walk.items
+  repeat
+    i = i + 1
+    local item = items[i]
+    if not item or alive(item) then
+      walk.i = i
+      if item then
+        walk.count = walk.count + 1
+        return item, walk.count
+      end
+      return nil
+    end
+  until false
+end
+
+ffi.metatype(L, {
+  __index = function(list, key)
+    if type(key) == "number" then return items_of(list)[key] end
+    local kind = kinds[list.kind_]
+    fail("a list of %s has no member '%s'; a %s is found by %s:%s(name) or by a number in [ ]", kind.list,
+      tostring(key), kind.name, kind.name == "body" and "sim" or "body", kind.name)
+  end,
+  __newindex = function(list) fail("the list of %s can't be changed by hand", kinds[list.kind_].list) end,
+  __len = function(list) return #items_of(list) end,
+  __eq = function(a, b)
+    return istype(L, a) and istype(L, b) and a.slot_ == b.slot_ and a.generation_ == b.generation_ and
+      a.kind_ == b.kind_
+  end,
+  __call = function(list, self, wanted)
+    local class = P.class_of(self)
+    if not class or self.slot_ ~= list.slot_ then
+      local name = kinds[list.kind_].list
+      fail("to walk %s write a colon: for x in thing:%s(…) do", name, name)
+    end
+    local entry = entry_of(list)
+    return step, { items = select_from(list, entry, wanted), i = 0, count = 0 }
+  end,
+  __tostring = function(list) return "list of " .. kinds[list.kind_].list end,
+})
+
+-- ipairs for lists and flags too
+local native_ipairs = ipairs
+function P.ipairs(t)
+  if istype(L, t) then return native_ipairs(items_of(t)) end
+  if istype(P.F, t) then return native_ipairs { t.x, t.y, t.z } end
+  return native_ipairs(t)
+end

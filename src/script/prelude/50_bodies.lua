@@ -1,0 +1,181 @@
+-- What bodies, parts, joints, motors and shapes have beside their rows.
+local P = ...
+local ffi, api, ctx, answer, istype = P.ffi, P.api, P.ctx, P.answer, P.ffi.istype
+local fail, describe, thing, classes = P.fail, P.describe, P.thing, P.classes
+local body, part, joint, motor, shape = classes.body, classes.part, classes.joint, classes.motor, classes.shape
+local bodies, parts, joints, motors, shapes = 0, 1, 2, 3, 4
+local number = answer.number
+
+for _, name in ipairs { "body", "part", "joint", "motor", "shape" } do
+  P.derive(classes[name])
+  P.common(classes[name])
+end
+
+local function related(which)
+  return function(h)
+    if api.related(ctx, h.slot_, h.generation_, which) ~= 0 then P.gone(h) end
+    return P.answered()
+  end
+end
+local function owner(h)
+  P.slot_of(h)
+  api.owner(ctx, h.slot_, h.generation_)
+  return P.answered()
+end
+local function list(kind) return function(h) return P.list_of(h, kind) end end
+
+for _, class in ipairs { part, joint, motor } do class.getters.body = owner end
+part.getters.shape = related(0)
+joint.getters.parent, joint.getters.child, joint.getters.motor = related(0), related(1), related(2)
+motor.getters.joint = related(0)
+body.getters.root = related(0)
+body.getters.parts, body.getters.joints, body.getters.motors = list(parts), list(joints), list(motors)
+joint.getters.type = function(h)
+  if api.joint_type(ctx, h.slot_, h.generation_) ~= 0 then P.gone(h) end
+  return P.text()
+end
+
+local function method(class, name, f)
+  class.methods[name] = function(h, ...)
+    P.check_self(h, class, name)
+    return f(h, ...)
+  end
+end
+
+for name, kind in pairs { part = parts, joint = joints, motor = motors } do
+  body.methods[name] = function(h, key)
+    if not istype(body.ctype, h) then P.check_self(h, body, name) end
+    return P.find_in(h, kind, key)
+  end
+end
+
+-- made things: answer, then what opts says
+local function finish_making(code, class, opts, own, h)
+  if code ~= 0 then P.check(code, P.gone, h) end
+  return P.apply_opts(P.answered(), class, opts, own)
+end
+P.finish_making = finish_making
+
+local pose = ffi.new("double[7]")
+-- position and rotation of an opts table as seven numbers; `missing` stands for what it leaves out
+function P.pose_of(opts, what, missing)
+  local p, q = opts and opts.position, opts and opts.rotation
+  for i = 0, 6 do pose[i] = missing or 0 end
+  if not missing then pose[6] = 1 end
+  if p ~= nil then
+    p = P.want_vec3(p, what .. ": position")
+    pose[0], pose[1], pose[2] = P.want_number(p.x, what), P.want_number(p.y, what), P.want_number(p.z, what)
+  end
+  if q ~= nil then
+    q = P.want_quat(q, what .. ": rotation")
+    if q.x == 0 and q.y == 0 and q.z == 0 and q.w == 0 then fail("%s: quat(0, 0, 0, 0) is no rotation", what) end
+    pose[3], pose[4], pose[5], pose[6] = P.want_number(q.x, what), P.want_number(q.y, what), P.want_number(q.z, what),
+      P.want_number(q.w, what)
+  end
+  return pose
+end
+
+local function shape_named(key) return P.find_in(P.sim, shapes, key) end
+
+local part_own = { mass = true, position = true, rotation = true }
+method(body, "add_part", function(h, name, of_shape, opts)
+  local what = "add_part"
+  P.want_text(name, what .. ": the name")
+  of_shape = shape_named(of_shape)
+  P.check_opts(part, opts, part_own, what)
+  local mass = opts and opts.mass
+  if mass ~= nil and P.want_number(mass, what .. ": mass") < 0 then
+    fail("%s: mass must not be negative (0: a part that never moves)", what)
+  end
+  local code = api.add_part(ctx, h.slot_, h.generation_, name, #name, of_shape.slot_, of_shape.generation_,
+    mass or -1, P.pose_of(opts, what))
+  return finish_making(code, part, opts, part_own, h)
+end)
+
+local joint_own = { type = true, position = true, axis = true }
+local frame = ffi.new("double[6]")
+method(body, "add_joint", function(h, name, parent, child, opts)
+  local what = "add_joint"
+  P.want_text(name, what .. ": the name")
+  parent, child = P.find_in(h, parts, parent), P.find_in(h, parts, child)
+  P.check_opts(joint, opts, joint_own, what)
+  opts = opts or {}
+  local kind = P.want_text(opts.type or "revolute", what .. ": type")
+  local position = P.want_vec3(opts.position or child.position, what .. ": position")
+  local axis = P.want_vec3(opts.axis or { 0, 0, 1 }, what .. ": axis")
+  frame[0], frame[1], frame[2] = position.x, position.y, position.z
+  frame[3], frame[4], frame[5] = axis.x, axis.y, axis.z
+  for i = 0, 5 do P.want_number(frame[i], what) end
+  local code = api.add_joint(ctx, h.slot_, h.generation_, name, #name, kind, #kind, parent.slot_, child.slot_, frame)
+  return finish_making(code, joint, opts, joint_own, h)
+end)
+
+method(body, "add_motor", function(h, of_joint, opts)
+  of_joint = P.find_in(h, joints, of_joint)
+  P.check_opts(motor, opts, {}, "add_motor")
+  return finish_making(api.add_motor(ctx, of_joint.slot_, of_joint.generation_), motor, opts, {}, of_joint)
+end)
+
+method(body, "copy", function(h, name, opts)
+  P.want_text(name, "copy: the name")
+  P.check_opts(body, opts, {}, "copy")
+  return finish_making(api.copy_body(ctx, h.slot_, h.generation_, name, #name), body, opts, {}, h)
+end)
+
+method(body, "state_hash", function(h)
+  api.state_hash(ctx, h.slot_, h.generation_)
+  return P.text()
+end)
+
+-- a link of the model, merged ones too: its name is known to its body for good
+local K = ffi.typeof("link")
+local links = {}
+method(body, "link", function(h, name)
+  P.want_text(name, "body:link")
+  P.check(api.link_pose(ctx, h.slot_, h.generation_, name, #name), P.gone, h)
+  for _, known in ipairs(links) do
+    if known.body == h and known.name == name then return known.handle end
+  end
+  local entry = { body = h, name = name, handle = K(h.slot_, h.generation_, #links + 1) }
+  links[#links + 1] = entry
+  return entry.handle
+end)
+
+local function link_pose(k)
+  local entry = links[k.number_]
+  local code = api.link_pose(ctx, k.slot_, k.generation_, entry.name, #entry.name)
+  if code ~= 0 then P.check(code, P.gone, entry.body) end
+end
+local link_members = {
+  name = function(k) return links[k.number_].name end,
+  body = function(k) return links[k.number_].body end,
+  alive = function(k) return P.alive(links[k.number_].body) end,
+  position = function(k)
+    link_pose(k)
+    return P.V(number[0], number[1], number[2])
+  end,
+  rotation = function(k)
+    link_pose(k)
+    return P.Q(number[3], number[4], number[5], number[6])
+  end,
+}
+local function link_label(k) return string.format("link '%s/%s'", P.names[links[k.number_].body], links[k.number_].name) end
+ffi.metatype(K, {
+  __index = function(k, key)
+    local get = link_members[key]
+    if get then return get(k) end
+    fail("%s has no member '%s'%s", link_label(k), tostring(key), P.hint(key, P.sorted_keys(link_members)))
+  end,
+  __newindex = function(k, key) fail("%s: '%s' can be read, not set", link_label(k), tostring(key)) end,
+  __tostring = link_label,
+})
+
+method(shape, "add_child", function(h, child, position, rotation)
+  child = shape_named(child)
+  local code = api.add_child(ctx, h.slot_, h.generation_, child.slot_, child.generation_,
+    P.pose_of({ position = position, rotation = rotation }, "add_child"))
+  P.check(code, P.gone, h)
+  return h
+end)
+
+for _, name in ipairs { "body", "part", "joint", "motor", "shape" } do P.finish(classes[name]) end

@@ -1,0 +1,140 @@
+-- `sim`: the world's rows, shapes, bodies, URDF files.
+local P = ...
+local ffi, api, ctx, answer = P.ffi, P.api, P.ctx, P.answer
+local fail, describe, classes = P.fail, P.describe, P.classes
+local class = classes.sim
+local bodies, shapes = 0, 4
+
+P.derive(class)
+class.getters.alive = P.alive
+class.getters.bodies = function(h) return P.list_of(h, bodies) end
+
+local function method(name, f)
+  class.methods[name] = function(h, ...)
+    P.check_self(h, class, name)
+    return f(h, ...)
+  end
+end
+P.sim_method = method
+
+method("body", function(h, key) return P.find_in(h, bodies, key) end)
+method("find_body", function(h, name)
+  P.want_text(name, "sim:find_body")
+  if api.find(ctx, h.slot_, h.generation_, bodies, name, #name) ~= 0 then return nil end
+  return P.answered()
+end)
+method("add_body", function(_, name, opts)
+  P.want_text(name, "add_body: the name")
+  P.check_opts(classes.body, opts, {}, "add_body")
+  return P.finish_making(api.add_body(ctx, name, #name), classes.body, opts, {})
+end)
+
+-- shapes
+local numbers = ffi.new("double[3]")
+local function add_shape(name, kind, x, y, z)
+  P.want_text(name, "add_" .. kind .. "_shape: the name")
+  numbers[0], numbers[1], numbers[2] = x or 0, y or 0, z or 0
+  P.check(api.add_shape(ctx, name, #name, kind, numbers))
+  return P.answered()
+end
+method("add_plane_shape", function(_, name, normal)
+  local n = P.want_vec3(normal == nil and { 0, 0, 1 } or normal, "add_plane_shape: the normal")
+  return add_shape(name, "plane", n.x, n.y, n.z)
+end)
+method("add_sphere_shape", function(_, name, radius)
+  return add_shape(name, "sphere", P.want_number(radius, "add_sphere_shape: the radius"))
+end)
+method("add_box_shape", function(_, name, size)
+  local s = P.want_vec3(size, "add_box_shape: the size (full edges)")
+  return add_shape(name, "box", s.x, s.y, s.z)
+end)
+for _, kind in ipairs { "cylinder", "capsule", "cone" } do
+  method("add_" .. kind .. "_shape", function(_, name, radius, height)
+    local what = "add_" .. kind .. "_shape: "
+    return add_shape(name, kind, P.want_number(radius, what .. "the radius"), P.want_number(height, what .. "the height"))
+  end)
+end
+method("add_compound_shape", function(_, name) return add_shape(name, "compound") end)
+
+local mesh_opts = { scale = true, max_vertices = true }
+method("add_convex_mesh_shape", function(_, name, source, opts)
+  local what = "add_convex_mesh_shape"
+  P.want_text(name, what .. ": the name")
+  P.check_opts({ setters = {} }, opts, mesh_opts, what)
+  opts = opts or {}
+  local from_file = type(source) == "string"
+  if not from_file and type(source) ~= "table" then
+    fail("%s takes a file's name or a list of vec3, not %s", what, describe(source))
+  end
+  local scale = opts.scale == nil and 1 or opts.scale
+  if type(scale) == "number" then scale = P.V(scale, scale, scale) end
+  scale = P.want_vec3(scale, what .. ": scale")
+  local most = P.want_number(opts.max_vertices or (from_file and 64 or 255), what .. ": max_vertices")
+  if most < 4 or most > 255 then fail("%s: max_vertices is 4 .. 255, not %s", what, tostring(most)) end
+  for _, x in ipairs { scale.x, scale.y, scale.z } do
+    if P.want_number(x, what .. ": scale") == 0 then fail("%s: scale must not be 0", what) end
+  end
+  api.mesh_clear(ctx)
+  if not from_file then
+    if #source > 100000 then fail("%s takes up to 100000 points", what) end
+    for i, point in ipairs(source) do
+      local p = P.want_vec3(point, what .. ": point " .. i)
+      api.mesh_point(ctx, P.want_number(p.x, what), P.want_number(p.y, what), P.want_number(p.z, what))
+    end
+  end
+  local file = from_file and source or ""
+  P.check(api.add_mesh_shape(ctx, name, #name, file, #file, scale.x, scale.y, scale.z, most))
+  return P.answered()
+end)
+
+-- URDF
+local urdf_own = { name = true, fixed_base = true, keep_fixed = true, motors = true, pose = true, package_path = true,
+  position = true, rotation = true }
+local function flag(which, value, what)
+  if value == nil then return end
+  if type(value) ~= "boolean" then fail("load_urdf: %s is true or false, not %s", what, describe(value)) end
+  api.urdf_flag(ctx, which, value and 1 or 0)
+end
+local function motor_option(motors)
+  if motors == nil then return end
+  if motors ~= "servo" and motors ~= "off" then
+    fail("load_urdf: motors is 'servo' or 'off', not %s", describe(motors))
+  end
+  api.urdf_flag(ctx, 2, motors == "servo" and 1 or 0)
+end
+method("load_urdf", function(_, path, opts)
+  P.want_text(path, "load_urdf: the file")
+  P.check_opts(classes.body, opts, urdf_own, "load_urdf")
+  opts = opts or {}
+  api.urdf_clear(ctx)
+  flag(0, opts.fixed_base, "fixed_base")
+  flag(1, opts.keep_fixed, "keep_fixed")
+  motor_option(opts.motors)
+  if opts.pose ~= nil then
+    if type(opts.pose) ~= "table" then fail("load_urdf: pose is a table { joint = value }, not %s", describe(opts.pose)) end
+    for _, joint in ipairs(P.sorted_keys(opts.pose)) do
+      joint = P.want_text(joint, "load_urdf: pose, a joint's name")
+      api.urdf_pose(ctx, joint, #joint, P.want_number(opts.pose[joint], "load_urdf: pose, " .. joint))
+    end
+  end
+  local paths = opts.package_path
+  for _, folder in ipairs(type(paths) == "table" and paths or { paths }) do
+    P.want_text(folder, "load_urdf: package_path")
+    api.urdf_package_path(ctx, folder, #folder)
+  end
+  local name = opts.name == nil and "" or P.want_text(opts.name, "load_urdf: name")
+  local code = api.load_urdf(ctx, path, #path, name, #name, P.pose_of(opts, "load_urdf", 0 / 0))
+  return P.finish_making(code, classes.body, opts, urdf_own)
+end)
+
+method("state_hash", function(h)
+  api.state_hash(ctx, h.slot_, h.generation_)
+  return P.text()
+end)
+method("reset", function()
+  P.needs_callback("sim:reset")
+  api.ask_reset(ctx)
+end)
+
+P.finish(class)
+P.sim = P.thing(P.world_slot, P.world_generation)

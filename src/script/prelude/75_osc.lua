@@ -1,0 +1,162 @@
+-- `osc`: handlers of messages that come in, messages that go out, ports and streams that a scene declares.
+local P = ...
+local ffi, api, ctx, answer, istype = P.ffi, P.api, P.ctx, P.answer, P.ffi.istype
+local fail, describe = P.fail, P.describe
+
+local handlers = {}
+local address_now, sender_now
+
+local function want_address(address, what)
+  P.want_text(address, what)
+  if string.byte(address, 1) ~= 47 then fail("%s: '%s' is no address: it must begin with /", what, address) end
+  if #address > 1024 or address:find("[%c\128-\255 ]") then
+    fail("%s: an address is up to 1024 characters of plain ASCII without blanks", what)
+  end
+  return address
+end
+
+local function put(value, what)
+  local kind = type(value)
+  if kind == "number" then return api.message_number(ctx, P.want_number(value, what)) end
+  if kind == "boolean" then return api.message_flag(ctx, value and 1 or 0) end
+  if kind == "string" then return api.message_text(ctx, value, #value) end
+  local v = P.as_vec3(value)
+  if not v then fail("%s sends numbers, text, booleans and vec3s, not %s", what, describe(value)) end
+  api.message_number(ctx, P.want_number(v.x, what))
+  api.message_number(ctx, P.want_number(v.y, what))
+  api.message_number(ctx, P.want_number(v.z, what))
+end
+
+-- a message is whole before it is handed over: a wrong value sends nothing
+local function send(what, way, ip, port, address, ...)
+  P.needs_callback(what)
+  want_address(address, what)
+  api.message_begin(ctx, address, #address)
+  for i = 1, select("#", ...) do put((select(i, ...)), what) end
+  P.check(api.message_send(ctx, way, ip, port))
+end
+
+local osc = {}
+local members = { "address", "sender", "on", "send", "reply", "listen", "stream_to", "to" }
+local function check(self, what)
+  if self ~= P.osc then fail("%s is a method of osc: write osc:%s(…), with a colon", what, what) end
+end
+
+function osc.on(self, pattern, f)
+  check(self, "on")
+  want_address(pattern, "osc:on")
+  P.want_function(f, "osc:on")
+  handlers[#handlers + 1] = { pattern = pattern, f = f }
+  api.osc_handlers(ctx, #handlers)
+end
+function osc.send(self, address, ...)
+  check(self, "send")
+  send("osc:send", 0, 0, 0, address, ...)
+end
+function osc.reply(self, address, ...)
+  check(self, "reply")
+  send("osc:reply", 1, 0, 0, address, ...)
+end
+function osc.listen(self, port)
+  check(self, "listen")
+  P.needs_top_level("osc:listen")
+  P.want_number(port, "osc:listen")
+  if port < 1 or port > 65535 or port % 1 ~= 0 then fail("osc:listen takes a port 1 .. 65535, not %s", tostring(port)) end
+  api.osc_listen(ctx, port)
+end
+
+local stream_bits = { pos = 1, rot = 2, relrot = 4, relpos = 8 }
+local stream_opts = { rate = true, streams = true, bodies = true, bundle = true, errors = true }
+local function streams_of(streams)
+  if streams == nil then return 7 end
+  local bits, seen = 0, {}
+  if type(streams) == "string" then
+    local list = {}
+    for name in streams:gmatch("[^+, ]+") do list[#list + 1] = name end
+    streams = list
+  end
+  if type(streams) ~= "table" then fail("osc:stream_to: streams is a list such as { 'pos', 'rot' }") end
+  for _, name in ipairs(streams) do
+    local bit = stream_bits[name]
+    if not bit then
+      fail("osc:stream_to: there is no stream '%s'%s", tostring(name), P.hint(name, P.sorted_keys(stream_bits)))
+    end
+    if not seen[name] then bits, seen[name] = bits + bit, true end
+  end
+  return bits
+end
+local function bundle_of(bundle)
+  if bundle == nil then return -1 end
+  if bundle == false or bundle == "off" or bundle == 0 then return 0 end
+  if bundle == 1472 or bundle == 8192 or bundle == 65504 then return bundle end
+  fail("osc:stream_to: bundle is 'off', 1472, 8192 or 65504, not %s", describe(bundle))
+end
+function osc.stream_to(self, target, opts)
+  check(self, "stream_to")
+  P.needs_top_level("osc:stream_to")
+  P.want_text(target, "osc:stream_to")
+  P.check_opts({ setters = {} }, opts, stream_opts, "osc:stream_to")
+  opts = opts or {}
+  local rate = opts.rate == nil and 60 or P.want_number(opts.rate, "osc:stream_to: rate")
+  if rate < 0.1 or rate > 1000 then fail("osc:stream_to: rate is 0.1 .. 1000, not %s", tostring(rate)) end
+  local bodies = opts.bodies == nil and "*" or opts.bodies
+  if P.class_of(bodies) == P.classes.body then bodies = bodies.name end
+  P.want_text(bodies, "osc:stream_to: bodies")
+  if opts.errors ~= nil and type(opts.errors) ~= "boolean" then fail("osc:stream_to: errors is true or false") end
+  P.check(api.osc_target(ctx, target, #target, rate, streams_of(opts.streams), bodies, #bodies,
+    bundle_of(opts.bundle), opts.errors and 1 or 0))
+end
+
+local A = ffi.typeof("address")
+local address_methods = {
+  send = function(to, address, ...)
+    if not istype(A, to) then fail("send is a method: write osc:to(\"host:port\"):send(…)") end
+    send("osc:to():send", 2, to.ip_, to.port_, address, ...)
+  end,
+}
+ffi.metatype(A, {
+  __index = function(_, key)
+    return address_methods[key] or fail("an address has no member '%s'%s", tostring(key), P.hint(key, { "send" }))
+  end,
+  __newindex = function() fail("an address has nothing to set") end,
+  __tostring = function(a)
+    local ip = a.ip_
+    return string.format("%d.%d.%d.%d:%d", math.floor(ip / 2 ^ 24), math.floor(ip / 2 ^ 16) % 256,
+      math.floor(ip / 2 ^ 8) % 256, ip % 256, a.port_)
+  end,
+})
+function osc.to(self, target)
+  check(self, "to")
+  P.want_text(target, "osc:to")
+  P.check(api.osc_address(ctx, target, #target))
+  return A(answer.number[0], answer.number[1])
+end
+
+P.osc = setmetatable({}, {
+  __index = function(_, key)
+    if key == "address" then return address_now end
+    if key == "sender" then return sender_now end
+    return osc[key] or fail("osc has no member '%s'%s", tostring(key), P.hint(key, members))
+  end,
+  __newindex = function(_, key) fail("osc: '%s' can't be set", tostring(key)) end,
+  __tostring = function() return "osc" end,
+  __metatable = "osc",
+})
+
+-- every handler whose pattern fits hears it; one that errs hears the next message again
+function P.entry.message(address, sender, ...)
+  local heard = false
+  local outer_address, outer_sender = address_now, sender_now
+  address_now, sender_now = address, sender
+  for i = 1, #handlers do
+    local entry = handlers[i]
+    local pattern = entry.pattern
+    if pattern == address or api.osc_matches(ctx, pattern, #pattern, address, #address) ~= 0 then
+      heard = true
+      local ok, fault = xpcall(entry.f, P.handler, ...)
+      if not ok then P.report(fault) end
+    end
+  end
+  address_now, sender_now = outer_address, outer_sender
+  return heard
+end

@@ -1,0 +1,94 @@
+-- Errors as a person reads them: file:line: what, the source line, the way there through the scripts.
+local P = ...
+local getinfo, format, sub, find = debug.getinfo, string.format, string.sub, string.find
+
+-- text of every script by the name that messages show
+local sources = {}
+P.sources = sources
+
+local function source_line(file, line)
+  local text, at = sources[file], 1
+  if not text then return nil end
+  for _ = 2, line do
+    local stop = find(text, "\n", at, true)
+    if not stop then return nil end
+    at = stop + 1
+  end
+  return (sub(text, at, (find(text, "\n", at, true) or #text + 1) - 1):gsub("\r", ""))
+end
+
+-- Lua cuts long names at the front: "...ts/arms.lua"
+local function whole_name(name)
+  if sources[name] then return name end
+  if sub(name, 1, 3) ~= "..." then return nil end
+  for _, known in ipairs(P.sorted_keys(sources)) do
+    if sub(known, 3 - #name) == sub(name, 4) then return known end
+  end
+end
+
+-- the place that a message begins with, and the rest
+local function place_in(message)
+  local from, to, name, line = find(message, "^(.-):(%d+): ")
+  if not from then return nil, nil, message end
+  local file = whole_name(name)
+  if file then return file, tonumber(line), sub(message, to + 1) end
+  -- an error that Lua found inside a prelude file belongs to the script that called it
+  if find(name, "^limber ") then return nil, nil, sub(message, to + 1) end
+  return nil, nil, message
+end
+
+local function explain(message)
+  if find(message, "^attempt to call method '.-' %(a %a+ value%)") and not find(message, "nil value") then
+    return message .. "; members take a dot, only methods a colon"
+  end
+  if message == "attempt to write to constant location" then
+    return "a vec3 or quat never changes; set the whole value"
+  end
+  return message
+end
+
+local function traceback(level)
+  local lines, shown = {}, 0
+  for l = level, 200 do
+    local info = getinfo(l, "Sln")
+    if not info then break end
+    if sub(info.source, 1, 1) == "@" then
+      shown = shown + 1
+      if shown > 20 then
+        lines[#lines + 1] = "  …"
+        break
+      end
+      local what = info.what == "main" and "the main chunk" or info.name and "function '" .. info.name .. "'" or
+        format("the function of line %d", info.linedefined)
+      lines[#lines + 1] = format("  %s:%d: in %s", sub(info.source, 2), info.currentline, what)
+    end
+  end
+  return lines
+end
+
+local function fault_of(file, line, message, trace)
+  local text = message
+  if file then
+    text = format("%s:%d: %s", file, line, message)
+    local source = source_line(file, line)
+    if source then text = format("%s\n  %d | %s", text, line, source) end
+  end
+  if #trace > 0 then text = text .. "\nstack traceback:\n" .. table.concat(trace, "\n") end
+  return { file = file or P.main or "", line = line or 0, text = text }
+end
+
+-- the message handler of every protected call; what is thrown may be anything, and its __tostring is never called
+function P.handler(thrown)
+  if type(thrown) ~= "string" then
+    thrown = type(thrown) == "number" and tostring(thrown) or format("an error that is no text but a %s", type(thrown))
+  end
+  local file, line, message = place_in(thrown)
+  if not file then file, line = P.where(3) end
+  return fault_of(file, line, explain(message), traceback(3))
+end
+
+-- a script that can't be compiled
+function P.syntax_fault(message)
+  local file, line, rest = place_in(message)
+  return fault_of(file, line, rest, {})
+end

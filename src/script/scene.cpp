@@ -1,0 +1,58 @@
+// A scene's run and its callbacks, on top of the Vm.
+#include "script/scene.h"
+
+#include <filesystem>
+
+#include "script/context.h"
+#include "script/vm.h"
+
+namespace limber {
+
+Scene::Scene(World& world, ScriptHost& host, SceneOptions options)
+    : context_(std::make_unique<ScriptContext>(world, host, std::move(options))),
+      vm_(std::make_unique<Vm>(*context_)) {}
+
+Scene::~Scene() = default;
+
+Result<void> Scene::run(const std::string& file) {
+  Result<std::string> text = read_script(file);
+  if (!text) return Error{text.error()};
+  ScriptContext& c = *context_;
+  c.files = ScriptFiles(file, c.options.data_dir);
+  c.random_name = std::filesystem::path(file).filename().string();
+  if (c.options.seed) {
+    const auto seed = static_cast<double>(*c.options.seed);
+    const Result<SetOutcome> set = c.world.store().set(c.world.id(), "seed", {&seed, 1});
+    if (!set) return Error{set.error()};
+  }
+  c.answer.top_level = 1;
+  const Result<void> ran = vm_->run(*text, c.files.shown(file));
+  c.answer.top_level = 0;
+  if (!ran) return ran;
+  c.host.plan_osc(c.plan);
+  return {};
+}
+
+void Scene::start() { vm_->start(); }
+
+void Scene::tick(double dt) { vm_->tick(dt); }
+
+bool Scene::listens() const { return context_->handlers > 0; }
+
+bool Scene::message(const Message& message, const Origin& origin) {
+  if (!listens()) return false;
+  ScriptContext& c = *context_;
+  c.sender = origin;
+  c.handling_message = true;
+  const bool heard = vm_->message(message, origin);
+  c.handling_message = false;
+  return heard;
+}
+
+void Scene::collect_garbage() { vm_->collect_garbage(); }
+
+std::uint64_t Scene::state_hash(std::uint64_t start) const { return context_->hash(start); }
+
+const std::string& Scene::show_folder() const { return context_->files.show_folder(); }
+
+}  // namespace limber

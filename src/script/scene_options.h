@@ -1,0 +1,17 @@
+// SceneOptions: what the command line says about running a scene.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace limber {
+
+struct SceneOptions {
+  std::string data_dir;                    ///< Installed data, looked into last; empty: none.
+  std::vector<std::string> package_paths;  ///< Where package:// of URDF files is looked for.
+  std::optional<std::uint64_t> seed;       ///< Wins over the scene's `sim.seed`.
+};
+
+}  // namespace limber
