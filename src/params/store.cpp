@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
 
 #include <fmt/format.h>
@@ -205,15 +206,13 @@ void Store::apply_marks() {
     applying_.swap(marked_);
     for (const NodeId id : applying_) {
       if (!alive(id)) continue;
-      const std::uint64_t marks = std::exchange(nodes_[id.slot].marks, 0);
-      std::array<void (*)(void*), 64> done{};
-      std::size_t count = 0;
-      for (const Row& row : nodes_[id.slot].table->rows()) {
-        if ((marks >> row.index & 1u) == 0) continue;
-        if (std::find(done.begin(), done.begin() + static_cast<std::ptrdiff_t>(count), row.effect) !=
-            done.begin() + static_cast<std::ptrdiff_t>(count))
-          continue;
-        done[count++] = row.effect;
+      const Table& table = *nodes_[id.slot].table;
+      std::array<void (*)(void*), 64> done;
+      auto end = done.begin();
+      for (std::uint64_t marks = std::exchange(nodes_[id.slot].marks, 0); marks != 0; marks &= marks - 1) {
+        const Row& row = table.row(static_cast<std::uint32_t>(std::countr_zero(marks)));
+        if (std::find(done.begin(), end, row.effect) != end) continue;
+        *end++ = row.effect;
         row.effect(nodes_[id.slot].thing);
       }
     }

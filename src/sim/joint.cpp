@@ -4,6 +4,7 @@
 #include <array>
 
 #include "sim/body.h"
+#include "sim/motor.h"
 #include "sim/world.h"
 
 namespace limber {
@@ -139,19 +140,23 @@ double Joint::value() const { return own_axis() < 0 ? 0 : constraint_->value(own
 
 void Joint::effect_limits() {
   const Store& store = body_.store();
+  bool opened = false;
   for (int axis = 0; axis < 6; axis++) {
     const auto half = static_cast<std::size_t>(axis / 3);
     const auto number = [&](const std::array<const Row*, 2>& rows) {
       return static_cast<float>(store.values(id_, *rows[half])[axis % 3]);
     };
     AxisSettings settings = constraint_->axis(axis);
+    const bool was_locked = settings.locked();
     settings.lower = number(limit_rows().lower);
     settings.upper = number(limit_rows().upper);
     settings.stop_erp = number(limit_rows().stop_erp);
     settings.stop_cfm = number(limit_rows().stop_cfm);
     settings.friction = axis == own_axis() ? static_cast<float>(spec_.friction) : 0;
     constraint_->set_axis(axis, settings);
+    opened = opened || (was_locked && !settings.locked());
   }
+  if (opened && motor_ != nullptr) motor_->effect_axes();
 }
 
 void Joint::read_anew() {
@@ -162,22 +167,22 @@ void Joint::read_anew() {
 void Joint::tell() {
   double* live = body_.store().live_block(id_);
   const LiveRows& rows = live_rows();
-  const Pose parent_frame = constraint_->parent_frame();
-  const Pose child_frame = constraint_->child_frame();
+  const btTransform& parent = parent_.rigid().getCenterOfMassTransform();
+  const btTransform& frame = constraint_->frame_in_parent();
   const int own = own_axis();
   live[rows.value->offset] = value();
   live[rows.speed->offset] = own < 0 ? 0 : constraint_->rate(own);
   put(live + rows.angles->offset, constraint_->angles());
   put(live + rows.offsets->offset, constraint_->offsets());
   put(live + rows.relrot->offset, constraint_->relrot());
-  put(live + rows.position->offset, parent_frame.position);
-  const Quat& q = child_frame.rotation;
+  put(live + rows.position->offset, from_bt(parent * frame.getOrigin()));
+  const Quat q = child_.pose().rotation * spec_.frame_in_child.rotation;
   double* rotation = live + rows.rotation->offset;
   rotation[0] = q.x;
   rotation[1] = q.y;
   rotation[2] = q.z;
   rotation[3] = q.w;
-  put(live + rows.axis->offset, parent_frame.rotation * Vec3(0, 0, 1));
+  put(live + rows.axis->offset, from_bt(parent.getBasis() * frame.getBasis().getColumn(2)));
 }
 
 }  // namespace limber

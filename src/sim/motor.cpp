@@ -42,6 +42,11 @@ const AxisRows& axis_rows() {
   return found;
 }
 
+bool same_drive(const AxisSettings& a, const AxisSettings& b) {
+  return a.drive == b.drive && a.velocity == b.velocity && a.max_force == b.max_force && a.target == b.target &&
+         a.rest == b.rest && a.stiffness == b.stiffness && a.spring_damping == b.spring_damping;
+}
+
 Row axis_flags(std::string name, std::string doc) {
   return axes(effect<&Motor::effect_axes>(flags3(std::move(name), {false, false, false}, std::move(doc))));
 }
@@ -171,15 +176,18 @@ void Motor::follow() {
 }
 
 void Motor::effect_axes() {
+  // at every tick for every motor that is played: values straight from the block, nothing for what is locked
   const Store& store = joint_.body().store();
+  const double* kept = store.kept_block(id_);
   JointConstraint& constraint = joint_.constraint();
   const AxisRows& rows = axis_rows();
   for (int axis = 0; axis < 6; axis++) {
     const auto half = static_cast<std::size_t>(axis / 3);
     const auto number = [&](const std::array<const Row*, 2>& r) {
-      return static_cast<float>(store.values(id_, *r[half])[axis % 3]);
+      return static_cast<float>(kept[r[half]->offset + static_cast<std::uint32_t>(axis % 3)]);
     };
     AxisSettings settings = constraint.axis(axis);
+    if (settings.locked()) continue;  // its drive comes when its limits open
     settings.drive = static_cast<AxisDrive>(mode(axis));
     settings.velocity = number(rows.velocity);
     settings.max_force = number(rows.max_force);
@@ -187,7 +195,7 @@ void Motor::effect_axes() {
     settings.rest = number(rows.rest);
     settings.stiffness = number(rows.stiffness);
     settings.spring_damping = number(rows.damping);
-    constraint.set_axis(axis, settings);
+    if (!same_drive(settings, constraint.axis(axis))) constraint.set_axis(axis, settings);
     if (settings.drive == AxisDrive::spring && number(rows.active) != 0) say_contradiction(axis);
   }
   constraint.set_bounce(store.values(id_, *rows.bounce)[0]);
@@ -217,13 +225,13 @@ void Motor::say_cap() {
 }
 
 void Motor::tell() {
-  Store& store = joint_.body().store();
+  double* const live = joint_.body().store().live_block(id_);
   const JointConstraint& constraint = joint_.constraint();
   const AxisRows& rows = axis_rows();
   const Vec3 force = constraint.applied_force();
   const Vec3 torque = constraint.applied_torque();
-  double* const told_force = store.tell(id_, *rows.applied_force);
-  double* const told_torque = store.tell(id_, *rows.applied_torque);
+  double* const told_force = live + rows.applied_force->offset;
+  double* const told_torque = live + rows.applied_torque->offset;
   bool capped = false;
   for (int i = 0; i < 3; i++) {
     told_force[i] = force[i];
@@ -231,9 +239,10 @@ void Motor::tell() {
   }
   for (int axis = 0; axis < 6; axis++) {
     const auto half = static_cast<std::size_t>(axis / 3);
+    const auto i = static_cast<std::uint32_t>(axis % 3);
     const double stiffness = constraint.stiffness_applied(axis);
-    store.tell(id_, *rows.stiffness_applied[half])[axis % 3] = stiffness;
-    store.tell(id_, *rows.damping_applied[half])[axis % 3] = constraint.damping_applied(axis);
+    live[rows.stiffness_applied[half]->offset + i] = stiffness;
+    live[rows.damping_applied[half]->offset + i] = constraint.damping_applied(axis);
     capped = capped || (constraint.axis(axis).drive == AxisDrive::spring &&
                         stiffness < 0.999 * static_cast<double>(constraint.axis(axis).stiffness));
   }

@@ -145,6 +145,8 @@ void Part::apply_impulse_at(const Vec3& impulse, const Vec3& at) {
 void Part::clear_forces() { force_ = torque_ = impulse_ = angular_impulse_ = Vec3(0); }
 
 void Part::push_forces() {
+  const Vec3 none(0);
+  if (force_ == none && torque_ == none && impulse_ == none && angular_impulse_ == none) return;
   if (is_static_) return clear_forces();
   rigid_->applyCentralForce(to_bt(force_));
   rigid_->applyTorque(to_bt(torque_));
@@ -154,13 +156,13 @@ void Part::push_forces() {
 }
 
 void Part::tell() {
-  Store& store = body_.store();
-  const btTransform& t = rigid_->getWorldTransform();
-  const Pose pose = from_bt(t) * geometry_->frame.inverse();
-  put(store.tell(id_, *live_rows().position), pose.position);
-  put(store.tell(id_, *live_rows().rotation), pose.rotation);
-  put(store.tell(id_, *live_rows().linear_velocity), from_bt(rigid_->getLinearVelocity()));
-  put(store.tell(id_, *live_rows().angular_velocity), from_bt(rigid_->getAngularVelocity()));
+  double* const live = body_.store().live_block(id_);
+  const LiveRows& rows = live_rows();
+  const Pose pose = from_bt(rigid_->getWorldTransform()) * geometry_->frame.inverse();
+  put(live + rows.position->offset, pose.position);
+  put(live + rows.rotation->offset, pose.rotation);
+  put(live + rows.linear_velocity->offset, from_bt(rigid_->getLinearVelocity()));
+  put(live + rows.angular_velocity->offset, from_bt(rigid_->getAngularVelocity()));
 }
 
 bool Part::reports_contacts() const { return reports_; }
