@@ -11,9 +11,9 @@ endforeach()
 if(count EQUAL 0)
   set(body "std::span<const PreludeFile> prelude_files() { return {}; }\n")
 else()
-  set(body "namespace {\nconstexpr PreludeFile kFiles[] = {\n${rows}};\n}  // namespace\n\n"
+  # joined as text: a list would swallow the semicolons
+  string(CONCAT body "namespace {\nconstexpr PreludeFile kFiles[] = {\n${rows}};\n}  // namespace\n\n"
            "std::span<const PreludeFile> prelude_files() { return kFiles; }\n")
-  list(JOIN body "" body)
 endif()
 file(WRITE "${TO}" "// Made by src/script/embed_prelude.cmake; the originals are in src/script/prelude.\n"
      "#include \"script/prelude.h\"\n\nnamespace limber {\n\n${body}\n}  // namespace limber\n")
