@@ -1,0 +1,117 @@
+// What the command line says about OSC: values, refusals with their cures, and who wins.
+#include "osc/options.h"
+
+#include <gtest/gtest.h>
+
+namespace limber {
+namespace {
+
+TEST(OscIn, Values) {
+  EXPECT_EQ(*parse_osc_in("9100"), (std::vector<ListenAddress>{{"127.0.0.1", 9100}}));
+  EXPECT_EQ(*parse_osc_in("0.0.0.0:9003"), (std::vector<ListenAddress>{{"0.0.0.0", 9003}}));
+  EXPECT_EQ(*parse_osc_in("9100,0.0.0.0:0"), (std::vector<ListenAddress>{{"127.0.0.1", 9100}, {"0.0.0.0", 0}}));
+  EXPECT_TRUE(parse_osc_in("off")->empty());
+}
+
+TEST(OscIn, RefusedWithCure) {
+  for (const char* text : {"", ":", "port", "127.0.0.1", "127.0.0.1:", ":9003", "65536", "-1", "9003 ", "9003,"}) {
+    const auto r = parse_osc_in(text);
+    ASSERT_FALSE(r.ok()) << text;
+    EXPECT_NE(r.error().find("write --osc-in [ADDR:]PORT"), std::string::npos) << r.error();
+  }
+  EXPECT_EQ(parse_osc_in("nine").error(),
+            "--osc-in 'nine': no port in 'nine'; write --osc-in [ADDR:]PORT, such as 9003 or 0.0.0.0:9003, or off");
+}
+
+TEST(OscOut, Values) {
+  EXPECT_EQ(*parse_osc_out("10.0.0.5:9005"), std::vector<StreamTarget>{StreamTarget{.host = "10.0.0.5"}});
+  const auto all = parse_osc_out("pi.local:7000,rate=30.5,bundle=8192,streams=pos+relpos,bodies=arm{1,2}*,errors=on");
+  ASSERT_TRUE(all.ok());
+  StreamTarget expected{.host = "pi.local", .port = 7000, .rate = 30.5};
+  expected.bundle = 8192;
+  expected.rot = expected.relrot = false;
+  expected.relpos = true;
+  expected.bodies = "arm{1,2}*";
+  expected.errors = true;
+  EXPECT_EQ(all->at(0), expected);
+  const auto none = parse_osc_out("h:1,streams=none,bundle=off,errors=off");
+  ASSERT_TRUE(none.ok());
+  EXPECT_FALSE(none->at(0).pos || none->at(0).rot || none->at(0).relrot || none->at(0).relpos);
+  EXPECT_EQ(none->at(0).bundle, 0);
+  EXPECT_TRUE(parse_osc_out("off")->empty());
+}
+
+TEST(OscOut, RefusedWithCure) {
+  const std::pair<const char*, const char*> cases[] = {
+      {"", "is no HOST:PORT"},
+      {"9005", "is no HOST:PORT"},
+      {":9005", "is no HOST:PORT"},
+      {"h:0", "is no HOST:PORT"},
+      {"h:9005,rate=0", "rate is 0.1 to 1000 frames a second"},
+      {"h:9005,rate=nan", "rate is 0.1 to 1000 frames a second"},
+      {"h:9005,rate", "rate is 0.1 to 1000 frames a second"},
+      {"h:9005,bundle=1500", "bundle is off, 1472, 8192 or 65504 bytes"},
+      {"h:9005,streams=pos+size", "streams are pos, rot, relrot and relpos, joined by +, or none"},
+      {"h:9005,streams=", "streams are pos, rot, relrot and relpos, joined by +, or none"},
+      {"h:9005,bodies=", "bodies is a name or a pattern, such as arm*"},
+      {"h:9005,errors=maybe", "errors is on or off"},
+      {"h:9005,rates=1", "there is no 'rates'; did you mean 'rate'?"},
+      {"h:9005,", "there is no ''"},
+  };
+  for (const auto& [text, what] : cases) {
+    const auto r = parse_osc_out(text);
+    ASSERT_FALSE(r.ok()) << text;
+    EXPECT_NE(r.error().find(what), std::string::npos) << r.error();
+    EXPECT_NE(r.error().find("write --osc-out HOST:PORT"), std::string::npos) << r.error();
+  }
+}
+
+TEST(OscAllow, Ranges) {
+  const auto list = parse_osc_allow("192.168.1.0/24,10.0.0.1,0.0.0.0/0");
+  ASSERT_TRUE(list.ok());
+  const std::vector<Cidr>& c = *list;
+  ASSERT_EQ(c.size(), 3u);
+  EXPECT_TRUE(c[0].holds(0xc0a80100u));
+  EXPECT_TRUE(c[0].holds(0xc0a801ffu));
+  EXPECT_FALSE(c[0].holds(0xc0a80200u));
+  EXPECT_FALSE(c[0].holds(0xc0a800ffu));
+  EXPECT_TRUE(c[1].holds(0x0a000001u));
+  EXPECT_FALSE(c[1].holds(0x0a000000u));
+  EXPECT_TRUE(c[2].holds(0xffffffffu));
+  // bits beyond the mask do not count
+  EXPECT_TRUE(parse_osc_allow("192.168.1.77/24")->at(0).holds(0xc0a80101u));
+}
+
+TEST(OscAllow, RefusedWithCure) {
+  for (const char* text :
+       {"", "localhost", "10.0.0", "10.0.0.1/33", "10.0.0.1/", "10.0.0.1/x", "10.0.0.256", "1.2.3.4,"}) {
+    const auto r = parse_osc_allow(text);
+    ASSERT_FALSE(r.ok()) << text;
+    EXPECT_NE(r.error().find("write --osc-allow 192.168.1.0/24"), std::string::npos) << r.error();
+  }
+}
+
+TEST(OscPlans, CommandLineBeforeSceneBeforeDefault) {
+  const OscPlan seed = {{{"127.0.0.1", 9003}}, {StreamTarget{.host = "127.0.0.1", .port = 9005}}};
+  EXPECT_EQ(effective_plan({}, nullptr), seed);
+  const OscPlan silent;
+  EXPECT_EQ(effective_plan({}, &silent), seed);
+  // each list is decided alone
+  const OscPlan scene = {{{"127.0.0.1", 7001}, {"127.0.0.1", 7002}}, {}};
+  EXPECT_EQ(effective_plan({}, &scene), (OscPlan{scene.listen, seed.targets}));
+  OscOptions line;
+  line.in = *parse_osc_in("off");
+  line.out = *parse_osc_out("h:1");
+  const OscPlan both = effective_plan(line, &scene);
+  EXPECT_TRUE(both.listen.empty());
+  EXPECT_EQ(both.targets, *line.out);
+}
+
+TEST(OscPlans, TargetText) {
+  EXPECT_EQ(target_text({}), "127.0.0.1:9005 (pos+rot+relrot at 60 Hz)");
+  EXPECT_EQ(target_text(parse_osc_out("h:7,rate=30,bundle=off,streams=none,bodies=a*,errors=on")->at(0)),
+            "h:7 (no streams at 30 Hz, bodies a*, no bundles, errors)");
+}
+
+}  // namespace
+}  // namespace limber

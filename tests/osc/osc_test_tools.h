@@ -1,0 +1,160 @@
+// Tools of the OSC tests: packets written by hand, a UDP client, a clock that is turned by hand, an inbox to wait at.
+#pragma once
+
+#include <netinet/in.h>
+#include <poll.h>
+#include <sys/socket.h>
+
+#include <bit>
+#include <chrono>
+#include <condition_variable>
+#include <cstdint>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "engine/link.h"
+#include "osc/clock.h"
+#include "osc/socket.h"
+
+namespace limber::osc_test {
+
+/// Nothing waits longer than this; only a failing test waits as long.
+inline constexpr int kPatienceMs = 20000;
+
+/// OSC's bytes as its specification has them, written without the code that is tested.
+class Bytes {
+ public:
+  Bytes& text(std::string_view s) {
+    bytes_ += s;
+    do bytes_ += '\0';
+    while (bytes_.size() % 4 != 0);
+    return *this;
+  }
+  Bytes& u32(std::uint32_t v) {
+    for (int shift = 24; shift >= 0; shift -= 8) bytes_ += static_cast<char>(v >> shift & 255u);
+    return *this;
+  }
+  Bytes& u64(std::uint64_t v) {
+    return u32(static_cast<std::uint32_t>(v >> 32)).u32(static_cast<std::uint32_t>(v & 0xffffffffu));
+  }
+  Bytes& f(float v) { return u32(std::bit_cast<std::uint32_t>(v)); }
+  Bytes& d(double v) { return u64(std::bit_cast<std::uint64_t>(v)); }
+  Bytes& raw(std::string_view s) {
+    bytes_ += s;
+    return *this;
+  }
+  const std::string& str() const { return bytes_; }
+
+ private:
+  std::string bytes_;
+};
+
+inline std::string bundle(std::uint64_t time_tag, const std::vector<std::string>& elements) {
+  Bytes b;
+  b.text("#bundle").u64(time_tag);
+  for (const std::string& e : elements) b.u32(static_cast<std::uint32_t>(e.size())).raw(e);
+  return b.str();
+}
+
+/// `/n ,i number`
+inline std::string numbered(std::uint32_t number) { return Bytes().text("/n").text(",i").u32(number).str(); }
+
+/// A clock that stands still until it is turned.
+struct HandClock {
+  std::int64_t ns = 5'000'000'000;
+  std::uint64_t ntp = std::uint64_t{3'900'000'000u} << 32;
+
+  void turn(double seconds) {
+    ns += static_cast<std::int64_t>(seconds * 1e9);
+    ntp += static_cast<std::uint64_t>(seconds * 4294967296.0);
+  }
+  NetClock clock() {
+    NetClock c;
+    c.steady = [this] { return ns; };
+    c.ntp = [this] { return ntp; };
+    return c;
+  }
+};
+
+/// A client's socket on this machine.
+class Client {
+ public:
+  Client() : socket_(std::move(open_udp({0x7f000001, 0}).value())) {
+    const int size = 4 << 20;
+    setsockopt(socket_.fd(), SOL_SOCKET, SO_RCVBUF, &size, sizeof size);
+  }
+
+  Endpoint end() const { return socket_.local(); }
+  void send(const Endpoint& to, std::string_view bytes) const {
+    const sockaddr_in address = socket_address(to);
+    sendto(socket_.fd(), bytes.data(), bytes.size(), 0, reinterpret_cast<const sockaddr*>(&address), sizeof address);
+  }
+  /// The next datagram and where it came from; nothing when none comes within `ms`.
+  std::optional<std::string> receive(int ms = kPatienceMs, Endpoint* from = nullptr) const {
+    pollfd p{socket_.fd(), POLLIN, 0};
+    if (poll(&p, 1, ms) <= 0) return std::nullopt;
+    std::string bytes(65536, '\0');
+    sockaddr_in address{};
+    socklen_t length = sizeof address;
+    const auto size =
+        recvfrom(socket_.fd(), bytes.data(), bytes.size(), 0, reinterpret_cast<sockaddr*>(&address), &length);
+    if (size < 0) return std::nullopt;
+    if (from != nullptr) *from = endpoint_of(address);
+    bytes.resize(static_cast<std::size_t>(size));
+    return bytes;
+  }
+
+ private:
+  Socket socket_;
+};
+
+/// An engine's link without an engine: what arrives is collected.
+class FakeEngine {
+ public:
+  FakeEngine() {
+    link.wake_engine = [this] {
+      const std::scoped_lock lock(mutex_);
+      rung_ = true;
+      bell_.notify_all();
+    };
+  }
+
+  /// Waits until that many messages have come in all; false when they do not.
+  bool wait_for(std::size_t messages) {
+    const auto until = std::chrono::steady_clock::now() + std::chrono::milliseconds(kPatienceMs);
+    for (;;) {
+      collect();
+      if (count() >= messages) return true;
+      std::unique_lock lock(mutex_);
+      if (!bell_.wait_until(lock, until, [this] { return rung_; })) return false;
+      rung_ = false;
+    }
+  }
+  void collect() {
+    std::vector<Command> batch;
+    link.inbox.drain(batch);
+    for (Command& c : batch) commands.push_back(std::move(c));
+  }
+  std::size_t count() const {
+    std::size_t n = 0;
+    for (const Command& c : commands) n += c.messages.size();
+    return n;
+  }
+  void say(Outgoing out) {
+    link.outbox.push(std::move(out));
+    link.wake_network();
+  }
+
+  EngineLink link;
+  std::vector<Command> commands;
+
+ private:
+  std::mutex mutex_;
+  std::condition_variable bell_;
+  bool rung_ = false;
+};
+
+}  // namespace limber::osc_test
