@@ -41,7 +41,7 @@ NumberText read_number(std::string_view text) {
     return {0, "is a xacro expression", "Run xacro on the file first."};
   }
   std::string_view digits = text;
-  if (digits.front() == '+') digits.remove_prefix(1);
+  if (digits.size() > 1 && digits.front() == '+' && digits[1] != '-') digits.remove_prefix(1);
   double value = 0;
   const auto [end, fault] = std::from_chars(digits.data(), digits.data() + digits.size(), value);
   const bool whole = end == digits.data() + digits.size();

@@ -1,0 +1,81 @@
+// Where mesh files are found, and that one file is loaded once.
+#include "model/mesh_library.h"
+
+#include <gtest/gtest.h>
+
+#include "files.h"
+#include "solids.h"
+
+namespace limber {
+namespace {
+
+std::string found(const std::string& uri, const std::string& folder, const std::vector<std::string>& packages = {}) {
+  const Result<std::string> path = find_mesh(uri, folder, packages);
+  return path ? std::filesystem::canonical(*path).string() : "none: " + path.error();
+}
+
+TEST(MeshLibrary, EveryFormOfUriIsFound) {
+  const test::Files files;
+  const auto canonical = [](const std::string& path) { return std::filesystem::canonical(path).string(); };
+  const std::string mesh = canonical(files.write("ws/arm/meshes/x.stl", "x"));
+  const std::string beside = canonical(files.write("ws/arm/urdf/y.stl", "y"));
+  const std::string other = canonical(files.write("elsewhere/hand/z.stl", "z"));
+  const std::string urdf = files.path("ws/arm/urdf");
+  EXPECT_EQ(found("package://arm/meshes/x.stl", urdf), mesh);
+  EXPECT_EQ(found("package://other_name/meshes/x.stl", urdf), mesh);
+  EXPECT_EQ(found("model://arm/meshes/x.stl", urdf), mesh);
+  EXPECT_EQ(found("../meshes/x.stl", urdf), mesh);
+  EXPECT_EQ(found("meshes/x.stl", urdf), mesh);
+  EXPECT_EQ(found("..\\meshes\\x.stl", urdf), mesh);
+  EXPECT_EQ(found(mesh, urdf), mesh);
+  EXPECT_EQ(found("file://" + mesh, urdf), mesh);
+  EXPECT_EQ(found("$(find arm)/meshes/x.stl", urdf), mesh);
+  EXPECT_EQ(found("package://y.stl", urdf), beside);
+  EXPECT_EQ(found("y.stl", urdf), beside);
+  EXPECT_EQ(found("package://hand/z.stl", urdf, {files.path("elsewhere")}), other);
+  EXPECT_EQ(found("package://hand/z.stl", urdf, {files.path("elsewhere/hand")}), other);
+}
+
+TEST(MeshLibrary, TheUrdfsOwnFolderWins) {
+  const test::Files files;
+  files.write("a/m.stl", "1");
+  const std::string near = std::filesystem::canonical(files.write("a/b/m.stl", "2")).string();
+  EXPECT_EQ(found("package://m.stl", files.path("a/b"), {files.path("a")}), near);
+}
+
+TEST(MeshLibrary, WhatIsNotFoundSaysWhereItLooked) {
+  const test::Files files;
+  const std::string text = found("package://hand/z.stl", files.path(""), {files.path("packages")});
+  EXPECT_NE(text.find(files.path("packages")), std::string::npos) << text;
+  EXPECT_NE(text.find("--package-path"), std::string::npos) << text;
+  EXPECT_NE(found("https://x.org/z.stl", files.path("")).find("network"), std::string::npos);
+  EXPECT_NE(found(files.path(""), files.path("")).find("none: "), std::string::npos) << "a folder is no mesh";
+}
+
+TEST(MeshLibrary, OneFileAndScaleIsOneMesh) {
+  const test::Files files;
+  const std::string path = files.write("box.stl", test::binary_stl(test::box({1, 2, 3})));
+  MeshLibrary library;
+  const auto first = library.load(path, Vec3(1));
+  const auto again = library.load(path, Vec3(1));
+  const auto scaled = library.load(path, Vec3(2));
+  ASSERT_TRUE(first && again && scaled);
+  EXPECT_EQ(*first, *again);
+  EXPECT_NE(*first, *scaled);
+  EXPECT_NEAR((*scaled)->solid.mass, 48, 1e-4);
+}
+
+TEST(MeshLibrary, AChangedFileIsLoadedAnew) {
+  const test::Files files;
+  const std::string path = files.write("m.stl", test::binary_stl(test::box({1, 1, 1})));
+  MeshLibrary library;
+  const auto first = library.load(path, Vec3(1));
+  files.write("m.stl", test::binary_stl(test::cylinder(1, 1, 8)));
+  const auto second = library.load(path, Vec3(1));
+  ASSERT_TRUE(first && second);
+  EXPECT_NE(*first, *second);
+  EXPECT_EQ((*first)->vertices.size(), 8u) << "who holds the old one keeps it";
+}
+
+}  // namespace
+}  // namespace limber

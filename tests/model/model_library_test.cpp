@@ -1,0 +1,82 @@
+// The same file is one shared model; a changed file, another option or a changed mesh is another.
+#include "model/model_library.h"
+
+#include <array>
+#include <thread>
+
+#include <gtest/gtest.h>
+
+#include "files.h"
+#include "solids.h"
+
+namespace limber {
+namespace {
+
+constexpr const char* kRobot =
+    R"(<robot name="r"><link name="a"><collision><geometry><mesh filename="m.stl"/></geometry></collision></link>
+<link name="b"/><joint name="j" type="fixed"><parent link="a"/><child link="b"/></joint></robot>)";
+
+TEST(ModelLibrary, SameFileAndOptionsAreOneModel) {
+  const test::Files files;
+  files.write("m.stl", test::binary_stl(test::box({1, 1, 1})));
+  const std::string path = files.write("r.urdf", kRobot);
+  ModelLibrary library;
+  const auto a = library.load_urdf(path);
+  const auto b = library.load_urdf(path);
+  ASSERT_TRUE(a && b);
+  EXPECT_EQ(*a, *b);
+  ASSERT_EQ((*a)->links[0].collisions.size(), 1u);
+  ImportOptions free;
+  free.fixed_base = false;
+  const auto c = library.load_urdf(path, free);
+  ASSERT_TRUE(c);
+  EXPECT_NE(*a, *c);
+  EXPECT_NEAR((*c)->links[0].inertial.mass, 1000, 1e-2);
+  EXPECT_EQ((*a)->links[0].collisions[0].shape.mesh, (*c)->links[0].collisions[0].shape.mesh);
+}
+
+TEST(ModelLibrary, ChangedFilesAreImportedAnew) {
+  const test::Files files;
+  files.write("m.stl", test::binary_stl(test::box({1, 1, 1})));
+  const std::string path = files.write("r.urdf", kRobot);
+  ModelLibrary library;
+  const auto first = library.load_urdf(path);
+  files.write("m.stl", test::binary_stl(test::cylinder(1, 1, 8)));
+  const auto mesh_changed = library.load_urdf(path);
+  files.write("r.urdf", R"(<robot name="new"><link name="a"/></robot>)");
+  const auto urdf_changed = library.load_urdf(path);
+  ASSERT_TRUE(first && mesh_changed && urdf_changed);
+  EXPECT_NE(*first, *mesh_changed);
+  EXPECT_EQ((*mesh_changed)->links[0].collisions[0].shape.mesh->vertices.size(), 18u);
+  EXPECT_EQ((*urdf_changed)->name, "new");
+}
+
+TEST(ModelLibrary, ManyThreadsGetOneModel) {
+  const test::Files files;
+  files.write("m.stl", test::binary_stl(test::capsule(1, 1, 64)));
+  const std::string path = files.write("r.urdf", kRobot);
+  ModelLibrary library;
+  std::array<std::shared_ptr<const BodyModel>, 4> got;
+  std::array<std::thread, 4> threads;
+  for (std::size_t i = 0; i < 4; ++i) {
+    threads[i] = std::thread([&, i] {
+      const auto model = library.load_urdf(path);
+      if (model) got[i] = *model;
+    });
+  }
+  for (std::thread& t : threads) t.join();
+  ASSERT_TRUE(got[0]);
+  for (const auto& model : got) EXPECT_EQ(model, got[0]);
+}
+
+TEST(ModelLibrary, AMissingFileIsAnErrorEachTime) {
+  ModelLibrary library;
+  for (int i = 0; i < 2; ++i) {
+    const auto none = library.load_urdf("no_such.urdf");
+    ASSERT_FALSE(none);
+    EXPECT_NE(none.error().find("no_such.urdf"), std::string::npos);
+  }
+}
+
+}  // namespace
+}  // namespace limber

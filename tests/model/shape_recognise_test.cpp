@@ -1,0 +1,96 @@
+// Meshes that are boxes, spheres and capsules, and meshes that are not.
+#include "model/shape_recognise.h"
+
+#include <algorithm>
+#include <array>
+
+#include <gtest/gtest.h>
+
+#include "import_text.h"
+#include "solids.h"
+
+namespace limber {
+namespace {
+
+std::optional<PlacedShape> recognised(const test::Solid& s) { return recognise(convex_hull(s.vertices)); }
+
+std::array<double, 3> sorted(const Vec3& v) {
+  std::array<double, 3> a{v.x, v.y, v.z};
+  std::sort(a.begin(), a.end());
+  return a;
+}
+
+TEST(ShapeRecognise, BoxesInAnyPlace) {
+  const Vec3 size{0.1, 0.25, 0.4};
+  const Pose poses[] = {{}, {{1, 2, 3}, quat_identity()}, {{-1, 0, 2}, quat_euler(0.5, 1, -2)}};
+  for (const Pose& pose : poses) {
+    const test::Solid mesh = test::box(size).moved(pose);
+    const std::optional<PlacedShape> found = recognised(mesh);
+    ASSERT_TRUE(found);
+    EXPECT_EQ(found->shape.kind, ShapeKind::box);
+    const auto a = sorted(found->shape.size), b = sorted(size);
+    for (std::size_t i = 0; i < 3; ++i) EXPECT_NEAR(a[i], b[i], 1e-9);
+    // each corner of the mesh is a corner of the box
+    for (const Vec3& v : mesh.vertices) {
+      const Vec3 in_box = glm::abs(found->origin.inverse() * v) * 2.0;
+      test::expect_near(in_box, found->shape.size, 1e-9);
+    }
+  }
+}
+
+TEST(ShapeRecognise, AnUprightBoxKeepsItsAxes) {
+  const std::optional<PlacedShape> found = recognised(test::box({0.1, 0.25, 0.4}).moved({{1, 2, 3}, quat_identity()}));
+  ASSERT_TRUE(found);
+  test::expect_near(found->shape.size, {0.1, 0.25, 0.4}, 1e-12);
+  EXPECT_NEAR(test::angle_between(found->origin.rotation, quat_identity()), 0, 1e-7);
+  test::expect_near(found->origin.position, {1, 2, 3}, 1e-12);
+}
+
+TEST(ShapeRecognise, FinelyMeshedBoxes) {
+  test::Solid mesh = test::box({1, 1, 2});
+  for (int i = 1; i < 20; ++i) {
+    for (int k = 1; k < 20; ++k) mesh.vertices.push_back({i / 20.0 - 0.5, k / 20.0 - 0.5, 1});
+  }
+  const std::optional<PlacedShape> found = recognised(mesh);
+  ASSERT_TRUE(found);
+  EXPECT_EQ(found->shape.kind, ShapeKind::box);
+}
+
+TEST(ShapeRecognise, CapsulesAndSpheres) {
+  const Pose pose{{0.3, -0.2, 1}, quat_euler(1, -0.6, 0.2)};
+  const std::optional<PlacedShape> capsule = recognised(test::capsule(0.05, 0.3).moved(pose));
+  ASSERT_TRUE(capsule);
+  EXPECT_EQ(capsule->shape.kind, ShapeKind::capsule);
+  EXPECT_NEAR(capsule->shape.radius, 0.05, 1e-6);
+  EXPECT_NEAR(capsule->shape.height, 0.3, 1e-6);
+  test::expect_near(capsule->origin.position, pose.position, 1e-6);
+  const Vec3 axis = pose.rotation * Vec3(0, 0, 1);
+  EXPECT_NEAR(std::abs(glm::dot(capsule->origin.rotation * Vec3(0, 0, 1), axis)), 1, 1e-9);
+
+  const std::optional<PlacedShape> sphere = recognised(test::capsule(0.2, 0, 32).moved(pose));
+  ASSERT_TRUE(sphere);
+  EXPECT_EQ(sphere->shape.kind, ShapeKind::sphere);
+  EXPECT_NEAR(sphere->shape.radius, 0.2, 1e-6);
+}
+
+TEST(ShapeRecognise, OtherSolidsAreNone) {
+  EXPECT_FALSE(recognised(test::cylinder(0.1, 0.5, 48)));
+  EXPECT_FALSE(recognised(test::cylinder(0.1, 0.5, 6)));
+  // a box with a corner cut off, a wedge, an octahedron (whose corners all lie on a sphere)
+  test::Solid cut = test::box({1, 1, 1});
+  cut.vertices[7] = {0.4, 0.4, 0.4};
+  EXPECT_FALSE(recognised(cut));
+  EXPECT_FALSE(recognised(test::cylinder(0.5, 1, 3)));
+  EXPECT_FALSE(recognised(test::turned({{0, -1}, {1, 0}, {0, 1}}, 4)));
+  // a parallelepiped: eight corners, three directions, not square
+  test::Solid sheared = test::box({1, 1, 1});
+  for (Vec3& v : sheared.vertices) v.x += 0.1 * v.z;
+  EXPECT_FALSE(recognised(sheared));
+  // a capsule whose one cap is flattened
+  test::Solid flat = test::capsule(0.1, 0.4);
+  for (Vec3& v : flat.vertices) v.z = std::min(v.z, 0.25);
+  EXPECT_FALSE(recognised(flat));
+}
+
+}  // namespace
+}  // namespace limber
