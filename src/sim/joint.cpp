@@ -43,6 +43,14 @@ void put(double* to, const Vec3& v) {
   to[2] = v.z;
 }
 
+// relrot(), which is costly, where the angles do not say it already: same order, one reading, no turns to count off
+Vec3 stream_angles(const JointConstraint& constraint) {
+  const Vec3 angles = constraint.angles();
+  const bool same = constraint.order() == std::array<int, 3>{2, 1, 0} && constraint.axis(4).locked() &&
+                    std::abs(angles.x) <= kPi && std::abs(angles.y) <= kPi / 2 && std::abs(angles.z) <= kPi;
+  return same ? angles : constraint.relrot();
+}
+
 // the axes that a type leaves free, before limits; 0..2 linear, 3..5 angular
 bool free_by_type(JointType type, int axis) {
   switch (type) {
@@ -174,7 +182,7 @@ void Joint::tell() {
   live[rows.speed->offset] = own < 0 ? 0 : constraint_->rate(own);
   put(live + rows.angles->offset, constraint_->angles());
   put(live + rows.offsets->offset, constraint_->offsets());
-  put(live + rows.relrot->offset, constraint_->relrot());
+  put(live + rows.relrot->offset, stream_angles(*constraint_));
   put(live + rows.position->offset, from_bt(parent * frame.getOrigin()));
   const Quat q = child_.pose().rotation * spec_.frame_in_child.rotation;
   double* rotation = live + rows.rotation->offset;

@@ -181,6 +181,7 @@ void Motor::effect_axes() {
   const double* kept = store.kept_block(id_);
   JointConstraint& constraint = joint_.constraint();
   const AxisRows& rows = axis_rows();
+  springs_ = false;
   for (int axis = 0; axis < 6; axis++) {
     const auto half = static_cast<std::size_t>(axis / 3);
     const auto number = [&](const std::array<const Row*, 2>& r) {
@@ -189,6 +190,7 @@ void Motor::effect_axes() {
     AxisSettings settings = constraint.axis(axis);
     if (settings.locked()) continue;  // its drive comes when its limits open
     settings.drive = static_cast<AxisDrive>(mode(axis));
+    springs_ = springs_ || settings.drive == AxisDrive::spring;
     settings.velocity = number(rows.velocity);
     settings.max_force = number(rows.max_force);
     settings.target = number(rows.servo_position);
@@ -232,11 +234,13 @@ void Motor::tell() {
   const Vec3 torque = constraint.applied_torque();
   double* const told_force = live + rows.applied_force->offset;
   double* const told_torque = live + rows.applied_torque->offset;
-  bool capped = false;
   for (int i = 0; i < 3; i++) {
     told_force[i] = force[i];
     told_torque[i] = torque[i];
   }
+  const bool told_springs = std::exchange(told_springs_, springs_);
+  if (!springs_ && !told_springs) return;
+  bool capped = false;
   for (int axis = 0; axis < 6; axis++) {
     const auto half = static_cast<std::size_t>(axis / 3);
     const auto i = static_cast<std::uint32_t>(axis % 3);

@@ -52,6 +52,8 @@ class Motor {
 
   Joint& joint_;
   NodeId id_;
+  bool springs_ = false;      // one is in force
+  bool told_springs_ = true;  // the live block may hold what one applies
   bool said_contradiction_ = false;
   bool said_cap_ = false;
 };
