@@ -29,11 +29,25 @@ void IslandSolver::convertJoints(btTypedConstraint** constraints, int count, con
     if (constraints[i]->getConstraintType() == JointConstraint::kType) {
       convert_rows(static_cast<JointConstraint&>(*constraints[i]), first, size.m_numConstraintRows, info);
     } else {
+      // Bullet's own kinds: their rows are swept one by one
       const int a = getOrInitSolverBody(constraints[i]->getRigidBodyA(), info.m_timeStep);
       const int b = getOrInitSolverBody(constraints[i]->getRigidBodyB(), info.m_timeStep);
       convertJoint(first, constraints[i], size, a, b, info);
+      add_rows(first, size.m_numConstraintRows, false, 0);
     }
   }
+}
+
+// Notes `count` rows for the sweeps; the last of them, a bounded one and `locked` ones, form the block.
+JointBlock& IslandSolver::add_rows(const btSolverConstraint* rows, int count, bool bounded, int locked) {
+  JointRows& entry = joints_.expandNonInitializing();
+  entry.first = static_cast<int>(rows - &m_tmpSolverNonContactConstraintPool[0]);
+  entry.scalar = count - locked - (bounded ? 1 : 0);
+  entry.body_a = rows->m_solverBodyIdA;
+  entry.body_b = rows->m_solverBodyIdB;
+  entry.block.build(rows + entry.scalar, bounded, locked, m_tmpSolverBodyPool[entry.body_a].internalGetInvMass(),
+                    m_tmpSolverBodyPool[entry.body_b].internalGetInvMass());
+  return entry.block;
 }
 
 void IslandSolver::convert_rows(JointConstraint& joint, btSolverConstraint* rows, int count,
@@ -85,15 +99,10 @@ void IslandSolver::convert_rows(JointConstraint& joint, btSolverConstraint* rows
     row.m_jacDiagABInv = step;
     row.m_cfm *= step;
   }
-  const int blocked = joint.locked_rows() + (joint.has_bounded_row() ? 1 : 0);
-  const int first = static_cast<int>(rows - &m_tmpSolverNonContactConstraintPool[0]);
-  JointRows& entry = joints_.expandNonInitializing();
-  entry.first = first;
-  entry.scalar = count - blocked;
-  entry.body_a = id_a;
-  entry.body_b = id_b;
-  entry.block.build(rows + entry.scalar, joint.has_bounded_row(), joint.locked_rows(), solver_a.internalGetInvMass(),
-                    solver_b.internalGetInvMass());
+  JointBlock& block = add_rows(rows, count, joint.has_bounded_row(), joint.locked_rows());
+  PairVelocity v(solver_a, solver_b);
+  block.warm_start(joint.warm_impulses(), v);
+  v.store(solver_a, solver_b);
   if (info.m_numIterations > m_maxOverrideNumSolverIterations) m_maxOverrideNumSolverIterations = info.m_numIterations;
 }
 
@@ -105,16 +114,12 @@ btScalar IslandSolver::sweep_joints() {
     JointRows& joint = joints_[i];
     btSolverBody& a = m_tmpSolverBodyPool[joint.body_a];
     btSolverBody& b = m_tmpSolverBodyPool[joint.body_b];
-    PairVelocity v{lanes(a.m_deltaLinearVelocity),  lanes(a.m_deltaAngularVelocity), lanes(b.m_deltaLinearVelocity),
-                   lanes(b.m_deltaAngularVelocity), lanes(a.internalGetInvMass()),   lanes(b.internalGetInvMass())};
+    PairVelocity v(a, b);
     for (int r = joint.first; r < joint.first + joint.scalar; ++r) {
       largest = std::max(largest, solve_row(m_tmpSolverNonContactConstraintPool[r], v));
     }
     largest = std::max(largest, joint.block.solve(v));
-    lanes(a.m_deltaLinearVelocity) = v.linear_a;
-    lanes(a.m_deltaAngularVelocity) = v.angular_a;
-    lanes(b.m_deltaLinearVelocity) = v.linear_b;
-    lanes(b.m_deltaAngularVelocity) = v.angular_b;
+    v.store(a, b);
   }
   return largest;
 }

@@ -33,6 +33,7 @@ class IslandSolver : public btSequentialImpulseConstraintSolver {
 
  private:
   void convert_rows(JointConstraint& joint, btSolverConstraint* rows, int count, const btContactSolverInfo& info);
+  JointBlock& add_rows(const btSolverConstraint* rows, int count, bool bounded, int locked);
   btScalar sweep_joints();
 
   struct JointRows {  // of one joint: `scalar` rows from `first` on, then those of the block

@@ -186,6 +186,17 @@ btScalar JointBlock::solve(PairVelocity& v) {
   }
 }
 
+void JointBlock::warm_start(const float* impulses, PairVelocity& v) {
+  if (bounded_) {
+    bounded_->m_appliedImpulse = *impulses;
+    apply(*bounded_, *impulses++, v);
+  }
+  for (int i = 0; i < locked_; ++i) {
+    impulse_[i / 4][i % 4] = impulses[i];
+    apply(rows_[i], impulses[i], v);
+  }
+}
+
 void JointBlock::finish() const {
   for (int i = 0; i < locked_; ++i) rows_[i].m_appliedImpulse = impulse_[i / 4][i % 4];
 }

@@ -14,6 +14,20 @@ inline const Lanes& lanes(const btVector3& v) { return reinterpret_cast<const La
 
 /// Change of velocity of a joint's two bodies while its rows are swept.
 struct PairVelocity {
+  PairVelocity(const btSolverBody& a, const btSolverBody& b)
+      : linear_a(lanes(a.m_deltaLinearVelocity)),
+        angular_a(lanes(a.m_deltaAngularVelocity)),
+        linear_b(lanes(b.m_deltaLinearVelocity)),
+        angular_b(lanes(b.m_deltaAngularVelocity)),
+        mass_a(lanes(a.m_invMass)),
+        mass_b(lanes(b.m_invMass)) {}
+  void store(btSolverBody& a, btSolverBody& b) const {
+    lanes(a.m_deltaLinearVelocity) = linear_a;
+    lanes(a.m_deltaAngularVelocity) = angular_a;
+    lanes(b.m_deltaLinearVelocity) = linear_b;
+    lanes(b.m_deltaAngularVelocity) = angular_b;
+  }
+
   Lanes linear_a, angular_a, linear_b, angular_b;
   Lanes mass_a, mass_b;  ///< Inverse masses.
 };
@@ -30,6 +44,8 @@ class JointBlock {
   /// IslandSolver.
   void build(const btSolverConstraint* rows, bool bounded, int locked, const btVector3& inverse_mass_a,
              const btVector3& inverse_mass_b);
+  /// Starts from these impulses, in the order of the rows given to build(), and applies them.
+  void warm_start(const float* impulses, PairVelocity& v);
   /// Solves the block against the bodies' present velocities; returns the largest squared change of an impulse.
   btScalar solve(PairVelocity& v);
   /// Writes the impulses into the rows.

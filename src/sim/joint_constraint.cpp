@@ -70,6 +70,7 @@ void JointConstraint::reset(const Vec3& near) {
   angle_ = {near.x, near.y, near.z};
   motor_impulse_.fill(0);
   repair_impulse_.fill(0);
+  last_impulse_.fill(0);
   tick_impulse_.fill(0);
   applied_.fill(0);
   learnt_inertia_.fill(0);

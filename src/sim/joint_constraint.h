@@ -107,6 +107,8 @@ class JointConstraint : public btTypedConstraint {
   /// The rows end with one motor row (if any) and those of the locked axes; IslandSolver solves these together.
   int locked_rows() const { return locked_rows_; }
   bool has_bounded_row() const { return bounded_row_; }
+  /// Impulses for these rows to start from, after those of the step before.
+  const float* warm_impulses() const { return warm_.data(); }
   /// Ends a tick: averages what was applied, refreshes the readouts.
   void end_tick();
 
@@ -120,7 +122,8 @@ class JointConstraint : public btTypedConstraint {
   static constexpr btTypedConstraintType kType = MAX_CONSTRAINT_TYPE;
 
  private:
-  enum class RowKind : std::uint8_t { plain, motor, repair };  // motor: counts as applied; repair: of a limit passed
+  // motor: counts as applied; repair: of a limit that was passed
+  enum class RowKind : std::uint8_t { plain, motor, repair, lock };
   // One row to come: rate + softness·impulse = velocity, impulse within [lower, upper].
   struct Row {
     btScalar velocity;
@@ -169,7 +172,9 @@ class JointConstraint : public btTypedConstraint {
   std::array<float, 3> offset_{};
   std::array<float, 6> rate_{};
   std::array<float, 6> previous_rate_{};
-  std::array<float, 6> motor_impulse_{};   // of the last internal step
+  std::array<float, 6> motor_impulse_{};  // of the last internal step
+  std::array<float, 6> last_impulse_{};   // of locks and motors, by axis
+  std::array<float, 7> warm_{};
   std::array<float, 6> repair_impulse_{};  // of the last internal step, on a limit that was passed
   std::array<float, 6> tick_impulse_{};    // of the tick so far
   std::array<float, 6> applied_{};

@@ -165,6 +165,22 @@ TEST(IslandWorld, AppliedForcesAreTheMeanOverTheTick) {
   EXPECT_NEAR(joint.rate(0), 0, 1e-6);
 }
 
+TEST(IslandWorld, BulletsOwnConstraintsWorkBesideOurs) {
+  Rig rig;
+  btRigidBody& first = rig.part(1, Vec3(0.1), {{0.5, 0, 0}, quat_identity()});
+  btRigidBody& second = rig.part(1, Vec3(0.1), {{1.5, 0, 0}, quat_identity()});
+  JointConstraint& hinge = rig.joint(rig.ground(), first, {}, {{-0.5, 0, 0}, quat_identity()});
+  hinge.set_axis(5, spin_axis(free_axis(), 1, 1000));
+  btFixedConstraint weld(first, second, to_bt(Pose{{0.5, 0, 0}, quat_identity()}),
+                         to_bt(Pose{{-0.5, 0, 0}, quat_identity()}));
+  rig.world.addConstraint(&weld);
+  rig.steps(240);
+  EXPECT_NEAR(hinge.value(5), 1, 0.01);
+  const Vec3 expected(1.5 * std::cos(hinge.value(5)), 1.5 * std::sin(hinge.value(5)), 0);
+  EXPECT_LT(glm::length(from_bt(second.getCenterOfMassPosition()) - expected), 5e-3);
+  rig.world.removeConstraint(&weld);
+}
+
 TEST(IslandWorld, NothingHappensWithoutTime) {
   Rig rig;
   rig.world.setGravity(btVector3(0, 0, -9.81f));
