@@ -19,9 +19,11 @@ class Latest {
   /// A value to fill: one that nobody reads any more, else a new one. Holds old content. [the writer]
   std::shared_ptr<T> spare() {
     for (const std::shared_ptr<T>& value : pool_) {
-      // the copy's atomic increment also acquires what the last reader released; a bare use_count() would not
       std::shared_ptr<T> mine = value;
-      if (mine.use_count() == 2) return mine;
+      if (mine.use_count() != 2) continue;
+      // a look at the count orders nothing; one more change of it does: it comes after the last reader's release
+      const std::shared_ptr<T> acquired = mine;
+      return mine;
     }
     pool_.push_back(std::make_shared<T>());
     return pool_.back();

@@ -15,67 +15,75 @@ namespace {
 char lower(char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; }
 
 constexpr int kMaxSteps = 20000;
-
-// one [..] class at pattern[i]; gives whether c is in it and moves i behind it; a missing ']' makes it no class
-bool class_match(std::string_view pattern, std::size_t& i, char c, bool& malformed) {
-  const std::size_t end = pattern.find(']', i + 1);
-  if (end == std::string_view::npos) {
-    malformed = true;
-    return false;
-  }
-  std::size_t k = i + 1;
-  const bool negated = k < end && pattern[k] == '!';
-  if (negated) k++;
-  bool in = false;
-  for (; k < end; k++) {
-    if (k + 2 < end && pattern[k + 1] == '-') {
-      in = in || (pattern[k] <= c && c <= pattern[k + 2]);
-      k += 2;
-    } else {
-      in = in || pattern[k] == c;
-    }
-  }
-  i = end + 1;
-  return in != negated;
-}
+constexpr int kMaxDepth = 200;  // of stars and braces within each other: the stack is bounded too
 
 struct Matcher {
   int steps = 0;
+  int depth = 0;
+
+  bool spent() { return ++steps > kMaxSteps; }
+
+  // one [..] class at p[i]: whether c is in it; i moves behind it. Without a ']' it is none and matches nothing
+  bool in_class(std::string_view p, std::size_t& i, char c) {
+    const std::size_t end = p.find(']', i + 1);
+    if (end == std::string_view::npos) return false;
+    std::size_t k = i + 1;
+    const bool negated = k < end && p[k] == '!';
+    if (negated) k++;
+    bool in = false;
+    while (k < end && !spent()) {
+      const bool range = k + 2 < end && p[k + 1] == '-';
+      in = in || (range ? p[k] <= c && c <= p[k + 2] : p[k] == c);
+      k += range ? 3 : 1;
+    }
+    i = end + 1;
+    return in != negated;
+  }
 
   bool match(std::string_view p, std::string_view s) {
     std::size_t i = 0;
     std::size_t k = 0;
     while (i < p.size()) {
-      if (++steps > kMaxSteps) return false;
-      if (p[i] == '*') return star(p.substr(i + 1), s.substr(k));
-      if (p[i] == '{') return braces(p, i, s.substr(k));
+      if (spent()) return false;
+      if (p[i] == '*') return star(p.substr(i), s.substr(k));
+      if (p[i] == '{') return braces(p.substr(i + 1), s.substr(k));
       if (k >= s.size()) return false;
-      if (p[i] == '?') {
+      if (p[i] == '[') {
+        if (!in_class(p, i, s[k])) return false;
+      } else {
+        if (p[i] != '?' && p[i] != s[k]) return false;
         i++;
-      } else if (p[i] == '[') {
-        bool malformed = false;
-        const bool in = class_match(p, i, s[k], malformed);
-        if (malformed || !in) return false;
-      } else if (p[i++] != s[k]) {
-        return false;
       }
       k++;
     }
     return k == s.size();
   }
 
-  bool star(std::string_view rest, std::string_view s) {
-    for (std::size_t k = 0; k <= s.size() && steps <= kMaxSteps; k++) {
-      if (match(rest, s.substr(k))) return true;
+  bool deeper(std::string_view p, std::string_view s) {
+    if (depth >= kMaxDepth) return false;
+    depth++;
+    const bool hit = match(p, s);
+    depth--;
+    return hit;
+  }
+
+  bool star(std::string_view p, std::string_view s) {
+    const std::string_view rest = p.substr(std::min(p.find_first_not_of('*'), p.size()));
+    for (std::size_t k = 0; k <= s.size() && !spent(); k++) {
+      if (deeper(rest, s.substr(k))) return true;
     }
     return false;
   }
 
-  bool braces(std::string_view p, std::size_t i, std::string_view s) {
-    const std::size_t end = p.find('}', i);
+  // p: what follows the opening brace
+  bool braces(std::string_view p, std::string_view s) {
+    const std::size_t end = p.find('}');
     if (end == std::string_view::npos) return false;
-    for (const std::string_view choice : split(p.substr(i + 1, end - i - 1), ',')) {
-      if (s.substr(0, choice.size()) == choice && match(p.substr(end + 1), s.substr(choice.size()))) return true;
+    for (std::size_t start = 0; start <= end && !spent();) {
+      const std::size_t comma = std::min(p.find(',', start), end);
+      const std::string_view choice = p.substr(start, comma - start);
+      if (s.starts_with(choice) && deeper(p.substr(end + 1), s.substr(choice.size()))) return true;
+      start = comma + 1;
     }
     return false;
   }
