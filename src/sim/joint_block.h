@@ -3,14 +3,20 @@
 // each other.
 #pragma once
 
+#include <cstring>
+
 #include "sim/bullet.h"
 
 namespace limber {
 
 /// Four floats at once. Debian's Bullet does not align its vectors; their fourth float is 0 in rows and bodies.
-using Lanes = float __attribute__((vector_size(16), may_alias, aligned(4)));
-inline Lanes& lanes(btVector3& v) { return reinterpret_cast<Lanes&>(v); }
-inline const Lanes& lanes(const btVector3& v) { return reinterpret_cast<const Lanes&>(v); }
+using Lanes = float __attribute__((vector_size(16)));
+inline Lanes lanes(const btVector3& v) {
+  Lanes l;
+  std::memcpy(&l, v.m_floats, sizeof l);
+  return l;
+}
+inline void put(const Lanes& l, btVector3& v) { std::memcpy(v.m_floats, &l, sizeof l); }
 
 /// Change of velocity of a joint's two bodies while its rows are swept.
 struct PairVelocity {
@@ -22,10 +28,10 @@ struct PairVelocity {
         mass_a(lanes(a.m_invMass)),
         mass_b(lanes(b.m_invMass)) {}
   void store(btSolverBody& a, btSolverBody& b) const {
-    lanes(a.m_deltaLinearVelocity) = linear_a;
-    lanes(a.m_deltaAngularVelocity) = angular_a;
-    lanes(b.m_deltaLinearVelocity) = linear_b;
-    lanes(b.m_deltaAngularVelocity) = angular_b;
+    put(linear_a, a.m_deltaLinearVelocity);
+    put(angular_a, a.m_deltaAngularVelocity);
+    put(linear_b, b.m_deltaLinearVelocity);
+    put(angular_b, b.m_deltaAngularVelocity);
   }
 
   Lanes linear_a, angular_a, linear_b, angular_b;
