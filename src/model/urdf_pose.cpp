@@ -92,7 +92,9 @@ double allowed(const JointModel& joint, double value) {
 
 /// The start values that the asker gave, by joint.
 Result<void> take_pose(UrdfBuild& build) {
-  for (const auto& [name, value] : build.options.pose) {
+  for (const auto& asked : build.options.pose) {
+    const std::string& name = asked.first;
+    const double value = asked.second;
     const auto found = std::find_if(build.model.joints.begin(), build.model.joints.end(),
                                     [&](const JointModel& j) { return j.name == name; });
     if (found == build.model.joints.end()) {

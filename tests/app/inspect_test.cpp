@@ -1,0 +1,112 @@
+// `limber inspect`: the JSON that product.md promises, the table, the exit codes.
+#include "app/inspect.h"
+
+#include <filesystem>
+#include <fstream>
+
+#include <gtest/gtest.h>
+#include <unistd.h>
+#include <nlohmann/json.hpp>
+
+#include "model/urdf_import.h"
+
+namespace limber {
+namespace {
+
+using nlohmann::json;
+
+constexpr const char* kRobot = R"(<robot name="r"><link name="base"/>
+<link name="arm"><inertial><origin xyz="0 0 0.5"/><mass value="2"/><inertia ixx="1" ixy="0.1" ixz="0.2" iyy="1.5" iyz="0.3" izz="1.25"/></inertial>
+<visual><geometry><box size="1 1 1"/></geometry></visual></link><link name="mark"/>
+<joint name="turn" type="revolute"><parent link="base"/><child link="arm"/><origin xyz="0 0 1"/><axis xyz="0 2 0"/><limit lower="0.5" upper="1" effort="3" velocity="4"/></joint>
+<joint name="weld" type="fixed"><parent link="arm"/><child link="mark"/><origin xyz="1 0 0"/></joint></robot>)";
+
+BodyModel model() {
+  MeshLibrary meshes;
+  const auto imported = import_urdf_text(kRobot, "r.urdf", {}, meshes);
+  EXPECT_TRUE(imported);
+  return **imported;
+}
+
+TEST(Inspect, JsonHasEveryLinkAndJointOfTheFile) {
+  const json j = json::parse(inspect_json(model()));
+  EXPECT_EQ(j.at("robot"), "r");
+  ASSERT_EQ(j.at("links").size(), 3u);
+  const json& arm = j["links"][1];
+  EXPECT_EQ(arm.at("name"), "arm");
+  EXPECT_EQ(arm.at("mass"), 2.0);
+  EXPECT_EQ(arm.at("com"), json({0.0, 0.0, 0.5}));
+  EXPECT_EQ(arm.at("inertia"), json({1.0, 0.1, 0.2, 1.5, 0.3, 1.25}));
+  EXPECT_EQ(arm.at("visuals"), 1);
+  EXPECT_EQ(arm.at("collisions"), 0);
+  EXPECT_EQ(arm.at("home").at("position"), json({0.0, 0.0, 1.0}));
+  EXPECT_EQ(arm.at("home").at("rotation"), json({0.0, 0.0, 0.0, 1.0}));
+  // the joint's zero lies below its limits: it starts at 0.5 about y
+  EXPECT_NEAR(arm.at("start").at("rotation").at(1).get<double>(), std::sin(0.25), 1e-12);
+  const json& mark = j["links"][2];
+  EXPECT_EQ(mark.at("home").at("position"), json({1.0, 0.0, 1.0}));
+  EXPECT_NEAR(mark.at("start").at("position").at(0).get<double>(), std::cos(0.5), 1e-12);
+  EXPECT_NEAR(mark.at("start").at("position").at(2).get<double>(), 1 - std::sin(0.5), 1e-12);
+}
+
+TEST(Inspect, JsonLimitsAreNullWhenFree) {
+  BodyModel m = model();
+  json j = json::parse(inspect_json(m))["joints"][0];
+  EXPECT_EQ(j.at("name"), "turn");
+  EXPECT_EQ(j.at("type"), "revolute");
+  EXPECT_EQ(j.at("axis"), json({0.0, 1.0, 0.0}));
+  EXPECT_EQ(j.at("lower"), 0.5);
+  EXPECT_EQ(j.at("upper"), 1.0);
+  EXPECT_EQ(j.at("effort"), 3.0);
+  EXPECT_EQ(j.at("velocity"), 4.0);
+  EXPECT_EQ(j.at("free"), false);
+  m.file_joints[0].free = true;
+  j = json::parse(inspect_json(m))["joints"][0];
+  EXPECT_TRUE(j.at("lower").is_null());
+  EXPECT_TRUE(j.at("upper").is_null());
+}
+
+TEST(Inspect, ProblemsHaveLineSeverityTextCure) {
+  const json problems = json::parse(inspect_json(model())).at("problems");
+  ASSERT_FALSE(problems.empty());
+  bool found = false;
+  for (const json& p : problems) {
+    EXPECT_EQ(p.size(), 4u);
+    EXPECT_FALSE(p.at("cure").get<std::string>().empty());
+    const bool start = p.at("text").get<std::string>().find("starts at 0.5") != std::string::npos;
+    found = found || (start && p.at("line") == 4 && p.at("severity") == "note");
+  }
+  EXPECT_TRUE(found) << problems.dump(1);
+}
+
+TEST(Inspect, TableNamesEverything) {
+  const std::string table = inspect_table(model());
+  for (const char* part :
+       {"r: 3 links, 2 joints, 2 kg", "base -> arm", "0.5 .. 1", "mark: merged into arm", "r.urdf:4: note: "}) {
+    EXPECT_NE(table.find(part), std::string::npos) << part << "\n" << table;
+  }
+}
+
+TEST(Inspect, ExitCodeIsOneOnlyWithoutABody) {
+  const std::filesystem::path file =
+      std::filesystem::temp_directory_path() / ("limber_inspect_" + std::to_string(getpid()) + ".urdf");
+  testing::internal::CaptureStdout();
+  testing::internal::CaptureStderr();
+  std::ofstream(file) << kRobot;
+  const int good = inspect_command(file.string(), true, {});
+  std::ofstream(file) << "<robot name=\"r\"><link name=\"a\"></robot>";
+  const int bad = inspect_command(file.string(), true, {});
+  std::filesystem::remove(file);
+  const int missing = inspect_command(file.string(), true, {});
+  const std::string out = testing::internal::GetCapturedStdout();
+  const std::string err = testing::internal::GetCapturedStderr();
+  EXPECT_EQ(good, 0);
+  EXPECT_EQ(bad, 1);
+  EXPECT_EQ(missing, 1);
+  EXPECT_EQ(json::parse(out).at("robot"), "r") << "only the good file's answer goes to stdout";
+  EXPECT_NE(err.find(file.string() + ":1: "), std::string::npos) << err;
+  EXPECT_NE(err.find("no such file"), std::string::npos) << err;
+}
+
+}  // namespace
+}  // namespace limber

@@ -1,0 +1,38 @@
+// Any bytes as a mesh file: the first byte says which format, the rest is the file.
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <cstdlib>
+#include <string_view>
+
+#include "model/mesh_load.h"
+
+namespace {
+
+void must(bool condition) {
+  if (!condition) std::abort();
+}
+
+}  // namespace
+
+// assimp's STL reader leaks the scene that it gave up on: a few kB for each broken file
+extern "C" const char* __lsan_default_suppressions() { return "leak:libassimp"; }
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  if (size == 0) return 0;
+  constexpr std::array kFormats{limber::MeshFormat::stl, limber::MeshFormat::obj, limber::MeshFormat::dae};
+  const std::string_view bytes(reinterpret_cast<const char*>(data) + 1, size - 1);
+  const limber::Vec3 scale = data[0] % 2 == 0 ? limber::Vec3(1) : limber::Vec3(0.5, -2, 3);
+  const auto mesh = limber::mesh_from_bytes(bytes, kFormats[data[0] / 2 % 3], scale, "fuzz");
+  if (!mesh) {
+    must(!mesh.error().empty());
+    return 0;
+  }
+  const limber::MeshModel& m = **mesh;
+  for (const limber::Vec3& v : m.vertices) must(limber::is_finite(v));
+  for (const unsigned t : m.triangles) must(t < m.vertices.size());
+  must(m.triangles.size() % 3 == 0 && m.hull.size() >= 4 && m.hull.size() <= 64);
+  must(std::isfinite(m.hull_error) && m.solid.mass > 0 && std::isfinite(m.solid.mass));
+  return 0;
+}
