@@ -8,7 +8,8 @@ namespace limber {
 /// "0.1.0". [any]
 std::string_view version();
 
-/// Short hash of the commit it was built from, with "+" when files differed from it; "unknown" outside a checkout. [any]
+/// Short hash of the commit it was built from, with "+" when files differed from it; "unknown" outside a checkout.
+/// [any]
 std::string_view commit();
 
 /// Where `cmake --install` puts scripts, urdf, behaviors_lua and shaders; it need not exist. [any]
