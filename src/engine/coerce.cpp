@@ -13,7 +13,12 @@ namespace limber {
 
 namespace {
 
-bool is_gravity(const Row& row) { return &row == &World::table().at("gravity"); }
+bool is_gravity(const Row& row) {
+  static const Row* const gravity = &World::table().at("gravity");
+  return &row == gravity;
+}
+
+bool is_flag(const Row& row) { return row.type == RowType::boolean || row.type == RowType::flags3; }
 
 // one number may stand for three
 bool takes_one(const Row& row) {
@@ -21,7 +26,7 @@ bool takes_one(const Row& row) {
 }
 
 bool counts(const Row& row, std::size_t n) {
-  if (row.kind == RowKind::action) return n >= row.min_args && n <= row.max_args && (n % 3 == 0 || row.max_args < 3);
+  if (row.kind == RowKind::action) return takes_count(row, n);
   return n == row.width || (n == 1 && takes_one(row));
 }
 
@@ -38,6 +43,24 @@ std::optional<double> truth_of(std::string_view text) {
   return {};
 }
 
+// what an argument says for this row, if it says a number at all
+std::optional<double> number_of(const Row& row, const Arg& arg) {
+  if (arg.is_numeric()) return arg.number;
+  if (!arg.is_text()) return {};
+  if (row.type == RowType::choice) {
+    if (const auto label = label_of(row, arg.text)) return label;
+  }
+  if (is_flag(row)) {
+    if (const auto truth = truth_of(arg.text)) return truth;
+  }
+  return parse_number(arg.text);
+}
+
+std::string shown(const Arg& arg) {
+  if (arg.is_text()) return fmt::format("'{}'", printable(arg.text));
+  return arg.is_numeric() ? number_text(arg.number) : "an argument without a value";
+}
+
 // the own axis's place among three, for linear or angular rows of a joint or motor; -1: none there
 int own_place(const Store& store, NodeId node, const Row& row) {
   const Table* table = &store.table(node);
@@ -49,56 +72,68 @@ int own_place(const Store& store, NodeId node, const Row& row) {
   return (own >= 3) == angular ? own % 3 : -1;
 }
 
+Error wrong_count(const Row& row, std::size_t given) {
+  return Error{fmt::format("takes {}, not {}", takes_text(row), given)};
+}
+
 }  // namespace
+
+bool takes_count(const Row& action, std::size_t numbers) {
+  return numbers >= action.min_args && numbers <= action.max_args && (action.max_args < 3 || numbers % 3 == 0);
+}
 
 std::string takes_text(const Row& row) {
   if (row.kind == RowKind::action) {
     if (row.max_args == 0) return "no value";
+    if (row.min_args == 0) return fmt::format("no value or {} number{}", row.max_args, row.max_args == 1 ? "" : "s");
     return row.min_args == row.max_args ? fmt::format("{} numbers", row.min_args)
                                         : fmt::format("{} or {} numbers", row.min_args, row.max_args);
   }
   if (row.type == RowType::choice) return fmt::format("one of {}", fmt::join(row.choices, ", "));
   if (row.type == RowType::boolean) return "true or false";
+  if (row.type == RowType::flags3) return "1 or 3 times true or false";
   if (row.width == 1) return "1 number";
   return takes_one(row) ? fmt::format("1 or {} numbers", row.width) : fmt::format("{} numbers", row.width);
 }
 
-Result<std::size_t> value_count(const Row& row, std::span<const Arg> args) {
+Result<ValueSplit> split_value(const Row& row, std::span<const Arg> args) {
   std::size_t numbers = 0;
   while (numbers < args.size() && args[args.size() - 1 - numbers].is_numeric()) numbers++;
+  if (counts(row, numbers)) return ValueSplit{numbers, false};
+  // text may say a number, a label, "true"
+  std::size_t said = numbers;
+  while (said < args.size() && number_of(row, args[args.size() - 1 - said])) said++;
+  if (counts(row, said)) return ValueSplit{said, false};
+  // a word where a label should be: coerce will say which there are
   const bool labels = row.type == RowType::choice || row.type == RowType::boolean;
-  if (numbers == 0 && labels && !args.empty() && args.back().is_text()) return std::size_t{1};
-  if (counts(row, numbers)) return numbers;
-  // somebody's body is called "1": a number too many in front is a name
-  for (const std::size_t names : {std::size_t{1}, std::size_t{2}}) {
-    if (row.kind != RowKind::action && numbers > names && numbers == args.size() && counts(row, numbers - names)) {
-      return numbers - names;
-    }
+  if (labels && said == 0 && !args.empty() && args.back().is_text()) return ValueSplit{1, false};
+  // somebody's body is called "1": numbers too many in front are names
+  const std::size_t words = args.size() - said;
+  for (std::size_t names = 1; row.kind != RowKind::action && names + words <= 2 && names < said; names++) {
+    if (counts(row, said - names)) return ValueSplit{said - names, true};
   }
-  return Error{fmt::format("takes {}, not {}", takes_text(row), numbers)};
+  return wrong_count(row, said);
 }
 
 Result<RowValues> coerce(const Row& row, std::span<const Arg> args) {
   RowValues result;
-  if (args.size() > result.values.size() && row.kind != RowKind::action) {
-    return Error{fmt::format("takes {}, not {}", takes_text(row), args.size())};
-  }
+  if (!counts(row, args.size())) return wrong_count(row, args.size());
   for (const Arg& arg : args) {
-    std::optional<double> value;
-    if (arg.is_numeric()) {
-      value = arg.number;
-    } else if (arg.is_text() && row.type == RowType::choice) {
-      value = label_of(row, arg.text);
-    } else if (arg.is_text()) {
-      value = parse_number(arg.text);
-      const bool flag = row.type == RowType::boolean || row.type == RowType::flags3;
-      if (!value && flag) value = truth_of(arg.text);
-    }
-    if (!value) return Error{fmt::format("takes {}, not '{}'", takes_text(row), arg.text)};
+    const std::optional<double> value = number_of(row, arg);
+    if (!value) return Error{fmt::format("takes {}, not {}", takes_text(row), shown(arg))};
     if (!std::isfinite(*value)) return Error{fmt::format("takes {}; {} is none", takes_text(row), *value)};
     result.values[result.count++] = *value;
   }
-  if (!counts(row, result.count)) return Error{fmt::format("takes {}, not {}", takes_text(row), result.count)};
+  if (row.type == RowType::choice) {
+    const double index = std::round(result.values[0]);
+    if (index < row.min || index > row.max)
+      return Error{fmt::format("takes {} (0 to {}), not {}", takes_text(row), row.max, result.values[0])};
+  }
+  if (row.type == RowType::quat) {
+    const double* q = result.values.data();
+    if (q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3] < 1e-18)
+      return Error{"takes a rotation x y z w; 0 0 0 0 is none"};
+  }
   return result;
 }
 

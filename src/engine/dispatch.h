@@ -2,32 +2,27 @@
 // derived from the tables but a few irregular addresses. A refused message changes nothing. [sim]
 #pragma once
 
-#include <functional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <unordered_map>
 #include <vector>
 
 #include "base/message.h"
+#include "engine/answers.h"
 #include "engine/coerce.h"
+#include "engine/outcome.h"
+#include "engine/select.h"
 #include "params/catalog.h"
 #include "sim/world.h"
 
 namespace limber {
 
-/// What became of a message.
-struct Outcome {
-  enum class Kind : std::uint8_t {
-    applied,
-    answered,  ///< `answer` goes to the sender.
-    refused,   ///< `error` says why; nothing was changed.
-    unknown,   ///< No such address of Limber's; `error` names near ones.
-  };
-  Kind kind = Kind::applied;
-  bool clamped = false;
-  bool kept = false;  ///< It set a property: a performer's value, which a reset keeps.
-  std::string error;
-  std::vector<Message> answers;
+/// An address that comes from no row.
+struct Irregular {
+  std::string_view address;
+  std::string_view takes;
+  std::string_view doc;
 };
 
 class Dispatch {
@@ -35,32 +30,56 @@ class Dispatch {
   explicit Dispatch(World& world);
 
   Outcome execute(const Message& message);
-  /// Every address that messages by name answer to: "/physics/part/mass" …, in order of the tables.
-  std::vector<std::string> seed_addresses() const;
+  /// Near names are looked for in so many messages between two calls; others are refused with a shorter text.
+  void begin_tick() { hints_.left = HintBudget::kPerTick; }
+
+  /// The seed's address of a row: "/physics/part/mass"; empty where the class has none, or the row can't be set.
+  static std::string seed_address(const Table& table, const Row& row);
+  /// What is answered beside the tables' rows.
+  static std::span<const Irregular> irregulars();
 
  private:
   /// A message that names things by arguments.
   struct ByName {
     const Table* table = nullptr;
     const Row* row = nullptr;
+    Outcome (Dispatch::*irregular)(const Message&) = nullptr;
   };
-  using Query = Outcome (Dispatch::*)(const Message&);
+  struct Write {
+    Place place;
+    RowValues values;
+  };
+  struct TextHash {
+    using is_transparent = void;
+    std::size_t operator()(std::string_view text) const { return std::hash<std::string_view>{}(text); }
+  };
+  template <class T>
+  using ByText = std::unordered_map<std::string, T, TextHash, std::equal_to<>>;
 
   Outcome by_name(const ByName& entry, const Message& message);
   Outcome by_path(const Message& message);
+  Outcome by_pattern(const Message& message);
+  /// Sets `places_` to the value; many leave out those that can't take it, a single one is refused with the reason.
+  Outcome apply(bool single, std::span<const Arg> value);
+  Outcome collect_writes(bool single, std::span<const Arg> value);
+  /// Does the action of each of `places_`.
+  Outcome act(std::span<const Arg> value);
   Outcome part_force(const Message& message);
   Outcome list(const Message& message);
   Outcome get(const Message& message);
-  Outcome apply(const std::vector<Place>& places, bool only_one, std::span<const Arg> value);
-  Outcome act(const std::vector<Place>& places, std::span<const Arg> value);
-  Result<std::vector<Place>> places_of(const ByName& entry, std::span<const Arg> names);
-  Outcome unknown(const Message& message) const;
-  std::span<const NodeId> elements(const Body& body, const Table& table) const;
+  Outcome gone(const Message& message);
 
   World& world_;
   Store& store_;
-  std::unordered_map<std::string, ByName> by_name_;   // by plain address
-  std::unordered_map<std::string, Query> irregular_;  // by plain address
+  HintBudget hints_;
+  Selector selector_{world_, hints_};
+  Answers answers_{world_, hints_};
+  ByText<ByName> by_name_;              // by plain address
+  std::vector<std::string> addresses_;  // all of them, for near ones
+  ByText<Place> paths_;                 // exact paths seen since the structure last changed
+  std::uint64_t paths_version_ = 0;
+  std::vector<Place> places_;  // scratch: what the message means
+  std::vector<Write> writes_;  // scratch: what it will write, once all of it is known to be right
 };
 
 }  // namespace limber

@@ -1,6 +1,7 @@
 // The simulation thread's loop.
 #include "engine/engine.h"
 
+#include <algorithm>
 #include <utility>
 
 #include <fmt/format.h>
@@ -12,13 +13,14 @@ namespace limber {
 
 namespace {
 
-constexpr std::size_t kMaxRemembered = 65536;  // performer's values that outlive a reset
+// while the next tick is further away than this, commands take effect without waiting for it
+constexpr auto kLongestWait = std::chrono::milliseconds(50);
 
 double seconds_now() {
   return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
 }
 
-// the time since the last call, onto `sum`
+// the time since the last lap
 class Stopwatch {
  public:
   double lap() {
@@ -33,18 +35,8 @@ class Stopwatch {
 }  // namespace
 
 Engine::Engine(EngineLink& link, EngineOptions options)
-    : link_(link), options_(std::move(options)), world_(std::make_unique<World>(store_)) {
-  dispatch_ = std::make_unique<Dispatch>(*world_);
-  transport_ = std::make_unique<Transport>(*world_);
-  counters_ = std::make_unique<CounterNode>(store_, link_.counters);
-  publisher_ = std::make_unique<Publisher>(*world_, link_.snapshots);
-  link_.wake_engine = [this] {
-    {
-      const std::scoped_lock lock(wake_mutex_);
-      woken_ = true;
-    }
-    wake_.notify_one();
-  };
+    : link_(link), options_(std::move(options)), stage_(std::make_unique<Stage>(link)) {
+  link_.wake_engine = [this] { commands_wait_.store(true, std::memory_order_relaxed); };
 }
 
 Engine::~Engine() {
@@ -52,197 +44,198 @@ Engine::~Engine() {
 }
 
 Result<void> Engine::start() {
-  if (const Result<void> ran = run_scene(); !ran) return ran;
-  for (const Message& message : options_.sets) {
-    const Outcome outcome = dispatch_->execute(message);
-    const bool ok = outcome.kind == Outcome::Kind::applied;
-    if (!ok)
-      return Error{fmt::format("--set {}: {}", message.address,
-                               outcome.kind == Outcome::Kind::answered ? "this is no value" : outcome.error)};
-    if (outcome.clamped) log_warning("--set {}: the value is outside its range and was clamped", message.address);
-    remember(message);
+  if (Result<void> ran = stage_->run(options_.scene, *this, options_.scene_options); !ran) return ran;
+  World& world = stage_->world;
+  if (options_.scene_options.seed) {
+    const auto seed = static_cast<double>(*options_.scene_options.seed);
+    (void)stage_->store.set(world.id(), "seed", {&seed, 1});  // any 53-bit seed is in its range
   }
-  world_->settle();
-  if (scene_ != nullptr) scene_->start();
-  publisher_->publish(transport_->paused(), 1);
+  scene_seed_ = world.seed();
+  for (const Message& message : options_.sets) {
+    const Outcome outcome = stage_->dispatch.execute(message);
+    if (outcome.kind == Outcome::Kind::answered)
+      return Error{fmt::format("--set {}: this is no value", message.address)};
+    if (outcome.kind != Outcome::Kind::applied)
+      return Error{fmt::format("--set {}: {}", printable(message.address), outcome.error)};
+    if (outcome.clamped != nullptr) say_clamped(message, *outcome.clamped);
+    hand_.remember(message);
+  }
+  world.settle();
+  if (stage_->scene != nullptr) stage_->scene->start();
+  publish();
   return {};
 }
 
-Result<void> Engine::run_scene() {
-  scene_ = nullptr;
-  world_->clear();
-  if (options_.scene.empty()) return {};
-  scene_ = std::make_unique<Scene>(*world_, static_cast<ScriptHost&>(*this), options_.scene_options);
-  return scene_->run(options_.scene);
-}
-
 void Engine::reset() {
-  world_->restart_time();
-  const Result<void> ran = run_scene();
-  if (!ran) {
+  // a scene that fails now leaves the show as it is
+  auto fresh = std::make_unique<Stage>(link_);
+  SceneOptions scene_options = options_.scene_options;
+  const World& before = stage_->world;
+  if (before.seed() != scene_seed_) scene_options.seed = before.seed();  // the performer's
+  if (const Result<void> ran = fresh->run(options_.scene, *this, scene_options); !ran) {
     faults_++;
-    log_error("reset: {}", ran.error());
+    log_error("reset: the scene plays on as it was, its file has an error: {}", ran.error());
+    return;
   }
-  for (const Message& message : performer_) {
-    if (!message.address.empty()) (void)dispatch_->execute(message);
+  for (const char* state : {"seed", "paused", "speed"}) {
+    const Row& row = World::table().at(state);
+    if (row.name == "seed" && !scene_options.seed) continue;
+    (void)fresh->store.set(fresh->world.id(), row, {stage_->store.values(before.id(), row), 1});
   }
-  world_->settle();
-  if (scene_ != nullptr && ran) scene_->start();
+  faults_ += before.health_events();
+  stage_ = std::move(fresh);
+  // what the performer set and the scene still has
+  for (const Message* message : hand_.in_order()) (void)stage_->dispatch.execute(*message);
+  stage_->world.settle();
+  if (stage_->scene != nullptr) stage_->scene->start();
+  send_transport();
 }
 
 void Engine::run() {
   clock_.restart(Clock::Time::clock::now());
   while (!stop_.load(std::memory_order_relaxed) && !finished()) {
-    if (!options_.fast) wait_until(clock_.due());
-    if (stop_.load(std::memory_order_relaxed)) break;
-    tick();
-    if (options_.fast && !transport_->paused()) continue;
-    const auto now = Clock::Time::clock::now();
-    const double speed = store_.values(world_->id(), World::table().at("speed"))[0];
-    clock_.tick(now, world_->timestep(), speed);
-    if (transport_->paused()) {
-      if (options_.fast) wait_until(clock_.due());
-      continue;
+    if (options_.fast && !stage_->transport.paused()) {
+      pass(true);
+    } else if (wait_for_tick()) {
+      pace();
+      pass(true);
+    } else if (commands_wait_.exchange(false, std::memory_order_relaxed)) {
+      pass(false);
     }
-    if (clock_.take_late()) {
-      log_warning(
-          "time runs at {:.2f} × real time: this machine can't keep up; fewer substeps or solver_iterations would help",
-          clock_.speed_reached());
-    }
+  }
+}
+
+// false: the tick is not due yet, but somebody may wait for an answer
+bool Engine::wait_for_tick() {
+  const auto due = clock_.due();
+  const auto until = std::min(due, Clock::Time::clock::now() + kLongestWait);
+  std::unique_lock lock(wake_mutex_);
+  wake_.wait_until(lock, until, [this] { return stop_.load(std::memory_order_relaxed); });
+  return until == due && !stop_.load(std::memory_order_relaxed);
+}
+
+void Engine::pace() {
+  static const Row& speed_row = World::table().at("speed");
+  World& world = stage_->world;
+  const double speed = stage_->store.values(world.id(), speed_row)[0];
+  clock_.tick(Clock::Time::clock::now(), world.timestep(), speed);
+  if (clock_.take_late() && !stage_->transport.paused()) {
+    log_warning(
+        "time runs at {:.2f} × real time instead of {}: this machine can't keep up; fewer substeps or "
+        "solver_iterations would help",
+        clock_.speed_reached(), speed);
   }
 }
 
 bool Engine::finished() const {
   if (options_.strict && faults() > 0) return true;
-  if (options_.ticks && world_->tick() >= *options_.ticks) return true;
-  return options_.duration && world_->time() >= *options_.duration - 1e-9;
+  if (options_.ticks && stage_->world.tick() >= *options_.ticks) return true;
+  return options_.duration && stage_->world.time() >= *options_.duration - 1e-9;
 }
 
 void Engine::stop() {
-  stop_.store(true);
-  link_.wake_engine();
+  {
+    const std::scoped_lock lock(wake_mutex_);
+    stop_.store(true);
+  }
+  wake_.notify_all();
 }
 
-void Engine::wait_until(Clock::Time due) {
-  std::unique_lock lock(wake_mutex_);
-  wake_.wait_until(lock, due, [this] { return stop_.load(std::memory_order_relaxed); });
-}
-
-void Engine::tick() {
+void Engine::pass(bool may_step) {
   Stopwatch watch;
   drain();
   times_.commands = watch.lap();
 
-  const bool running = !transport_->paused() || transport_->take_step();
+  Stage& stage = *stage_;
+  const bool running = may_step && (!stage.transport.paused() || stage.transport.take_step());
   call_handlers();
-  if (running && scene_ != nullptr) scene_->tick(world_->timestep());
+  if (running && stage.scene != nullptr) stage.scene->tick(stage.world.timestep());
   times_.scripts = watch.lap();
 
   if (running) {
-    world_->step();
+    stage.world.step();
+    const TickTimes& physics = stage.world.times();
+    times_.effects = physics.effects;
+    times_.physics = physics.physics;
+    times_.readouts = physics.readouts;
+    send_contacts();
   } else {
-    world_->settle();
+    stage.world.settle();
   }
-  const TickTimes& physics = world_->times();
-  times_.effects = physics.effects;
-  times_.physics = physics.physics;
-  times_.readouts = physics.readouts;
   watch.lap();
 
-  if (world_->take_reset_request()) reset();
-  counters_->tell();
-  transport_->tell(options_.fast ? 1 : clock_.speed_reached());
-  publisher_->publish(transport_->paused(), clock_.speed_reached());
-  if (running) send_events();
-  if (was_paused_ != transport_->paused()) {
-    was_paused_ = transport_->paused();
-    push_out({Outgoing::To::event,
-              {},
-              {"/transport/state",
-               {Arg::of(was_paused_), Arg::of(static_cast<double>(world_->tick())), Arg::of(world_->time()),
-                Arg::of(clock_.speed_reached())}}});
-  }
+  if (stage.world.take_reset_request()) reset();
+  publish();
+  if (was_paused_ != stage_->transport.paused()) send_transport();
   times_.snapshot = watch.lap();
-  if (scene_ != nullptr) scene_->collect_garbage();
+  if (stage_->scene != nullptr) stage_->scene->collect_garbage();
   times_.collector = watch.lap();
 }
 
+void Engine::publish() {
+  stage_->counters.tell();
+  stage_->transport.tell(clock_.speed_reached());
+  stage_->publisher.publish(stage_->transport.paused(), clock_.speed_reached());
+}
+
 void Engine::drain() {
-  heard_.clear();
+  stage_->dispatch.begin_tick();
   link_.inbox.drain(commands_);
   for (Command& command : commands_) {
     for (Message& message : command.messages) execute(message, command.origin);
   }
 }
 
-void Engine::execute(const Message& message, const Origin& origin) {
-  Outcome outcome = dispatch_->execute(message);
-  if (outcome.clamped) link_.counters.clamped.fetch_add(1, std::memory_order_relaxed);
-  if (outcome.kind == Outcome::Kind::applied && outcome.kept) remember(message);
+void Engine::execute(Message& message, const Origin& origin) {
+  Outcome outcome = stage_->dispatch.execute(message);
+  if (outcome.clamped != nullptr) {
+    link_.counters.clamped.fetch_add(1, std::memory_order_relaxed);
+    say_clamped(message, *outcome.clamped);
+  }
+  if (outcome.kept) hand_.remember(message);
   for (Message& answer : outcome.answers) push_out({Outgoing::To::sender, origin, std::move(answer)});
   if (outcome.kind == Outcome::Kind::refused) {
     link_.counters.refused.fetch_add(1, std::memory_order_relaxed);
     faults_++;
-    push_out({Outgoing::To::error, origin, {"/error", {Arg::of(message.address), Arg::of(outcome.error)}}});
+    refuse(message.address, origin, std::move(outcome.error));
   }
+  const bool unknown = outcome.kind == Outcome::Kind::unknown;
   // the scene's handlers hear it after every message of the tick took effect
-  if (scene_ != nullptr && scene_->listens()) {
-    heard_.push_back({message, origin, std::move(outcome)});
-  } else if (outcome.kind == Outcome::Kind::unknown) {
+  if (stage_->scene != nullptr && stage_->scene->listens()) {
+    heard_.push_back({std::move(message), origin, unknown, std::move(outcome.error)});
+  } else if (unknown) {
     link_.counters.unknown.fetch_add(1, std::memory_order_relaxed);
-    push_out({Outgoing::To::error, origin, {"/error", {Arg::of(message.address), Arg::of(outcome.error)}}});
+    refuse(std::move(message.address), origin, std::move(outcome.error));
   }
 }
 
 void Engine::call_handlers() {
   for (Heard& heard : heard_) {
-    const bool answered = scene_->message(heard.message, heard.origin);
-    if (answered || heard.outcome.kind != Outcome::Kind::unknown) continue;
+    const bool handled = stage_->scene->message(heard.message, heard.origin);
+    if (handled || !heard.unknown) continue;
     link_.counters.unknown.fetch_add(1, std::memory_order_relaxed);
-    push_out({Outgoing::To::error,
-              heard.origin,
-              {"/error", {Arg::of(heard.message.address), Arg::of(heard.outcome.error)}}});
+    refuse(std::move(heard.message.address), heard.origin, std::move(heard.error));
   }
   heard_.clear();
 }
 
-void Engine::remember(const Message& message) {
-  // the key: the address and the names; the newest value moves to the end, since the last one wins
-  std::string key = plain_name(message.address);
-  for (const Arg& arg : message.args) {
-    if (!arg.is_text()) break;
-    key += '\n';
-    key += arg.text;
-  }
-  const auto known = performer_at_.find(key);
-  if (known != performer_at_.end()) {
-    performer_[known->second].address.clear();  // its place is empty now
-    known->second = performer_.size();
-  } else if (performer_at_.size() < kMaxRemembered) {
-    performer_at_.emplace(std::move(key), performer_.size());
-  } else {
-    return;
-  }
-  performer_.push_back(message);
-  if (performer_.size() > 2 * performer_at_.size() + 64) forget_empty_places();
+void Engine::refuse(std::string address, const Origin& origin, std::string error) {
+  push_out({Outgoing::To::error, origin, {"/error", {Arg::of(address), Arg::of(error)}}});
 }
 
-void Engine::forget_empty_places() {
-  std::vector<std::size_t> moved(performer_.size());
-  std::size_t count = 0;
-  for (std::size_t i = 0; i < performer_.size(); i++) {
-    moved[i] = count;
-    if (!performer_[i].address.empty()) count++;
-  }
-  std::erase_if(performer_, [](const Message& m) { return m.address.empty(); });
-  for (auto& [key, place] : performer_at_) place = moved[place];
+void Engine::say_clamped(const Message& message, const Row& row) {
+  if (std::find(said_clamped_.begin(), said_clamped_.end(), &row) != said_clamped_.end()) return;
+  said_clamped_.push_back(&row);
+  log_warning("{}: a value outside {} .. {} was brought into this range (said once for {})", printable(message.address),
+              row.min, row.max, row.name);
 }
 
-void Engine::send_events() {
-  for (const ContactEvent& contact : world_->contacts()) {
-    if (!store_.alive(contact.part) || !store_.alive(contact.other)) continue;
-    const auto* part = static_cast<const Part*>(store_.thing(contact.part));
-    const auto* other = static_cast<const Part*>(store_.thing(contact.other));
+void Engine::send_contacts() {
+  const Store& store = stage_->store;
+  for (const ContactEvent& contact : stage_->world.contacts()) {
+    if (!store.alive(contact.part) || !store.alive(contact.other)) continue;
+    const auto* part = static_cast<const Part*>(store.thing(contact.part));
+    const auto* other = static_cast<const Part*>(store.thing(contact.other));
     push_out({Outgoing::To::event,
               {},
               {"/physics/contact",
@@ -252,14 +245,23 @@ void Engine::send_events() {
   }
 }
 
+void Engine::send_transport() {
+  was_paused_ = stage_->transport.paused();
+  push_out({Outgoing::To::event,
+            {},
+            {"/transport/state",
+             {Arg::of(was_paused_), Arg::of(static_cast<double>(stage_->world.tick())), Arg::of(stage_->world.time()),
+              Arg::of(clock_.speed_reached())}}});
+}
+
 void Engine::push_out(Outgoing out) {
   link_.outbox.push(std::move(out));
   link_.wake_network();
 }
 
 std::uint64_t Engine::state_hash() const {
-  const std::uint64_t hash = world_->state_hash();
-  return scene_ == nullptr ? hash : scene_->state_hash(hash);
+  const std::uint64_t hash = stage_->world.state_hash();
+  return stage_->scene == nullptr ? hash : stage_->scene->state_hash(hash);
 }
 
 void Engine::send(Message message) { push_out({Outgoing::To::targets, {}, std::move(message)}); }
@@ -275,7 +277,7 @@ void Engine::plan_osc(const OscPlan& plan) {
   link_.wake_network();
 }
 
-void Engine::ask_reset() { world_->ask_reset(); }
+void Engine::ask_reset() { stage_->world.ask_reset(); }
 
 void Engine::script_error(std::string_view file, int line, std::string_view text) {
   if (text.empty()) {

@@ -8,15 +8,12 @@
 #include <mutex>
 #include <optional>
 #include <string>
-#include <unordered_map>
 #include <vector>
 
 #include "engine/clock.h"
-#include "engine/dispatch.h"
+#include "engine/hand.h"
 #include "engine/link.h"
-#include "engine/publish.h"
-#include "engine/transport.h"
-#include "script/scene.h"
+#include "engine/stage.h"
 
 namespace limber {
 
@@ -44,6 +41,7 @@ struct PhaseTimes {
 
 class Engine : private ScriptHost {
  public:
+  /// The link outlives the engine, and nobody calls its `wake_engine` while the engine goes.
   Engine(EngineLink& link, EngineOptions options);
   ~Engine() override;
   Engine(const Engine&) = delete;
@@ -54,17 +52,17 @@ class Engine : private ScriptHost {
   /// Ticks until the end that the options name, or stop(). [sim]
   void run();
   /// One tick now, whatever the clock says; while paused only commands and handlers. [sim]
-  void tick();
+  void tick() { pass(true); }
   /// Ends run() soon. [any]
   void stop();
 
-  World& world() { return *world_; }
-  Store& store() { return store_; }
+  World& world() { return stage_->world; }
+  Store& store() { return stage_->store; }
   const PhaseTimes& times() const { return times_; }
   /// World, scene and generators. [sim]
   std::uint64_t state_hash() const;
   /// Script errors and refused values so far, health events: what `--strict` asks for. [sim]
-  std::uint64_t faults() const { return faults_ + world_->health_events(); }
+  std::uint64_t faults() const { return faults_ + stage_->world.health_events(); }
 
  private:
   void send(Message message) override;
@@ -74,46 +72,46 @@ class Engine : private ScriptHost {
   void ask_reset() override;
   void script_error(std::string_view file, int line, std::string_view text) override;
 
-  Result<void> run_scene();
+  /// A tick; or, when `may_step` is false, only what happens while time stands still.
+  void pass(bool may_step);
   void reset();
   void drain();
-  void execute(const Message& message, const Origin& origin);
-  void remember(const Message& message);
-  void forget_empty_places();
+  void execute(Message& message, const Origin& origin);
+  void refuse(std::string address, const Origin& origin, std::string error);
   void call_handlers();
-  void send_events();
-  void wait_until(Clock::Time due);
+  void publish();
+  void say_clamped(const Message& message, const Row& row);
+  void send_contacts();
+  void send_transport();
+  bool wait_for_tick();
+  void pace();
   bool finished() const;
   void push_out(Outgoing out);
 
   EngineLink& link_;
   EngineOptions options_;
-  Store store_;
-  std::unique_ptr<World> world_;
-  std::unique_ptr<Dispatch> dispatch_;
-  std::unique_ptr<Transport> transport_;
-  std::unique_ptr<CounterNode> counters_;
-  std::unique_ptr<Publisher> publisher_;
-  std::unique_ptr<Scene> scene_;
+  std::unique_ptr<Stage> stage_;
+  std::uint64_t scene_seed_ = 0;  // as the scene's run left it
+  PerformerHand hand_;
   Clock clock_;
   PhaseTimes times_;
 
   struct Heard {
     Message message;
     Origin origin;
-    Outcome outcome;
+    bool unknown = false;
+    std::string error;
   };
   std::vector<Command> commands_;
-  std::vector<Heard> heard_;        // messages of this tick, for the scene's handlers
-  std::vector<Message> performer_;  // the last value by hand for each address and names, in order
-  std::unordered_map<std::string, std::size_t> performer_at_;
+  std::vector<Heard> heard_;              // messages of this tick, for the scene's handlers
+  std::vector<const Row*> said_clamped_;  // rows whose clamping was said
   std::uint64_t faults_ = 0;
   bool was_paused_ = false;
 
   std::atomic<bool> stop_{false};
+  std::atomic<bool> commands_wait_{false};
   std::mutex wake_mutex_;
   std::condition_variable wake_;
-  bool woken_ = false;
 };
 
 }  // namespace limber

@@ -54,6 +54,7 @@ Result<void> Transport::act_play(std::span<const double>) {
 }
 
 Result<void> Transport::act_pause(std::span<const double>) {
+  steps_ = 0;
   set_paused(true);
   return {};
 }

@@ -1,0 +1,101 @@
+// Names in messages to things.
+#include "engine/select.h"
+
+#include <fmt/format.h>
+
+#include "base/text.h"
+
+namespace limber {
+
+namespace {
+
+// a name as text without a copy, where it is text; `buffer` holds a number's
+std::string_view view_of(const Arg& name, std::string& buffer) {
+  if (name.is_text()) return name.text;
+  buffer = number_text(name.number);
+  return buffer;
+}
+
+}  // namespace
+
+std::string Selector::text(const Arg& name) { return name.is_text() ? name.text : number_text(name.number); }
+
+bool Selector::single(std::span<const Arg> names) {
+  if (names.size() != 2) return false;
+  for (const Arg& name : names) {
+    if (name.is_text() && is_pattern(name.text)) return false;
+  }
+  return true;
+}
+
+void Selector::add(const Body& body, const Table& table, const Row& row, std::string_view element,
+                   std::vector<Place>& out) const {
+  const Store& store = world_.store();
+  const NodeId group = store.child(body.id(), table.name());
+  if (!element.empty() && !is_pattern(element)) {
+    const NodeId id = store.child(group, element);
+    if (!id.null()) out.push_back({id, &row});
+    return;
+  }
+  for (const NodeId id : store.children(group)) {
+    if (element.empty() || pattern_match(element, store.name(id))) out.push_back({id, &row});
+  }
+}
+
+Result<void> Selector::select(const Table& table, const Row& row, std::span<const Arg> names,
+                              std::vector<Place>& out) const {
+  std::string buffers[2];
+  const std::string_view first = names.empty() ? "*" : view_of(names[0], buffers[0]);
+  const std::string_view second = names.size() < 2 ? "" : view_of(names[1], buffers[1]);
+  bool body_found = false;
+  if (!is_pattern(first)) {
+    if (const Body* body = world_.find_body(first)) {
+      body_found = true;
+      add(*body, table, row, second, out);
+    }
+  } else {
+    for (const auto& body : world_.bodies()) {
+      if (!names.empty() && !pattern_match(first, body->name())) continue;
+      body_found = true;
+      add(*body, table, row, second, out);
+    }
+  }
+  // one name that is no body's: an element's, wherever it is
+  if (names.size() == 1 && !body_found) {
+    for (const auto& body : world_.bodies()) add(*body, table, row, first, out);
+  }
+  if (!out.empty() || names.empty()) return {};
+  if (names.size() == 2) return nothing_in(table, first, second);
+  if (body_found) return Error{fmt::format("body '{}' has no {}s", printable(first), table.name())};
+  return nothing_called(table, first);
+}
+
+Error Selector::nothing_called(const Table& table, std::string_view name) const {
+  if (is_pattern(name)) return Error{fmt::format("no body and no {} matches '{}'", table.name(), printable(name))};
+  std::vector<std::string_view> near = world_.body_names();
+  if (!world_.bodies().empty()) add_names(*world_.bodies().front(), table, near);
+  return Error{fmt::format("there is no body or {} '{}'{}", table.name(), printable(name), hint(name, near))};
+}
+
+Error Selector::nothing_in(const Table& table, std::string_view body, std::string_view element) const {
+  const Body* found = world_.find_body(body);
+  if (found == nullptr && !is_pattern(body))
+    return Error{fmt::format("there is no body '{}'{}", printable(body), hint(body, world_.body_names()))};
+  if (found == nullptr || is_pattern(element))
+    return Error{fmt::format("no {} matches '{}' in '{}'", table.name(), printable(element), printable(body))};
+  std::vector<std::string_view> near;
+  add_names(*found, table, near);
+  return Error{
+      fmt::format("no {} '{}' in '{}'{}", table.name(), printable(element), printable(body), hint(element, near))};
+}
+
+void Selector::add_names(const Body& body, const Table& table, std::vector<std::string_view>& out) const {
+  const Store& store = world_.store();
+  for (const NodeId id : store.children(store.child(body.id(), table.name()))) out.push_back(store.name(id));
+}
+
+std::string Selector::hint(std::string_view written, const std::vector<std::string_view>& names) const {
+  return hints_.take() ? name_hint(written, names) : "";
+}
+
+}  // namespace limber

@@ -1,0 +1,39 @@
+// Stage: everything that one run of a scene lives in. A reset builds a new one and takes it only when it is good. [sim]
+#pragma once
+
+#include <memory>
+#include <string>
+
+#include "engine/dispatch.h"
+#include "engine/link.h"
+#include "engine/publish.h"
+#include "engine/transport.h"
+#include "script/scene.h"
+
+namespace limber {
+
+struct Stage {
+  explicit Stage(EngineLink& link)
+      : world(store),
+        transport(world),
+        counters(store, link.counters),
+        dispatch(world),
+        publisher(world, link.snapshots) {}
+
+  /// Runs the scene's file; without one the world stays empty.
+  Result<void> run(const std::string& file, ScriptHost& host, const SceneOptions& options) {
+    if (file.empty()) return {};
+    scene = std::make_unique<Scene>(world, host, options);
+    return scene->run(file);
+  }
+
+  Store store;
+  World world;
+  Transport transport;
+  CounterNode counters;
+  Dispatch dispatch;
+  Publisher publisher;
+  std::unique_ptr<Scene> scene;  // last: it goes first
+};
+
+}  // namespace limber
