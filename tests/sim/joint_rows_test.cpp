@@ -138,7 +138,7 @@ TEST(JointRows, StopCfmIsTheYieldPerLoadOfLimitsAndLocks) {
           Slider s(axis, settings);
           s.child.setDamping(0.8f, 0.8f);  // lets the softest come to rest
           const double load = 0.3 / std::max(cfm, 0.1);
-          for (int i = 0; i < 600; ++i) {
+          for (int i = 0; i < 1200; ++i) {
             s.push(load);
             s.steps(4);
           }
