@@ -1,0 +1,178 @@
+// OSC's speed: what a datagram costs on its way in, and a frame of a thousand bodies on its way out.
+#include <benchmark/benchmark.h>
+
+#include <time.h>
+
+#include <algorithm>
+#include <memory>
+#include <string>
+#include <thread>
+
+#include "base/log.h"
+#include "osc/batch.h"
+#include "osc/decode.h"
+#include "osc/network.h"
+#include "osc/osc_test_tools.h"
+#include "osc/stream_test_world.h"
+#include "osc/validate.h"
+
+namespace limber {
+namespace {
+
+using namespace osc_test;
+
+std::string mass_message() {
+  return Bytes().text("/physics/part/mass").text(",ssf").text("quadruped").text("foot_1").f(0.25f).str();
+}
+
+void osc_validate(benchmark::State& state) {
+  const std::string bytes = mass_message();
+  for (auto _ : state) benchmark::DoNotOptimize(packet_fault(bytes.data(), bytes.size()));
+  state.SetItemsProcessed(state.iterations());
+}
+BENCHMARK(osc_validate);
+
+void osc_decode(benchmark::State& state) {
+  const std::string bytes = mass_message();
+  for (auto _ : state) benchmark::DoNotOptimize(decode_packet(bytes.data(), bytes.size()));
+  state.SetItemsProcessed(state.iterations());
+}
+BENCHMARK(osc_decode);
+
+// from the datagram to the engine's inbox, without a socket; drained every thousand
+void osc_take(benchmark::State& state) {
+  auto engine = std::make_unique<FakeEngine>();
+  const NetClock clock;
+  Receiver receiver(engine->link, {}, {}, clock);
+  const std::string bytes = mass_message();
+  std::vector<Command> commands;
+  int count = 0;
+  for (auto _ : state) {
+    receiver.take(bytes.data(), bytes.size(), {0x7f000001, 5000});
+    if (++count % 1000 == 0) engine->link.inbox.drain(commands);
+  }
+  state.SetItemsProcessed(state.iterations());
+}
+BENCHMARK(osc_take);
+
+// range(0) messages as fast as a client sends them, range(1) to a datagram; then wait until the last is in. Messages a
+// second and the share that was lost
+void osc_burst(benchmark::State& state) {
+  auto engine = std::make_unique<FakeEngine>();
+  const Client client;
+  OscOptions options;
+  options.in = *parse_osc_in("0");
+  options.out = *parse_osc_out("off");
+  Network network(engine->link, options, kTestOffsets);
+  if (!network.start()) return state.SkipWithError("no port");
+  const Endpoint to = network.bound().at(0);
+  const auto count = static_cast<std::uint64_t>(state.range(0));
+  const auto per = static_cast<std::size_t>(state.range(1));
+  const std::string bytes = per == 1 ? mass_message() : bundle(1, std::vector<std::string>(per, mass_message()));
+  const std::string ping = Bytes().text("/ping").str();
+  std::vector<Command> commands;
+  const std::uint64_t before = engine->link.counters.received;
+  for (auto _ : state) {
+    for (std::uint64_t i = 0; i < count; i += per) {
+      client.send(to, bytes);
+      if (i % 50000 == 0) engine->link.inbox.drain(commands);
+    }
+    // the ping stands behind all the others; it may be lost too
+    do client.send(to, ping);
+    while (!client.receive(100));
+    state.PauseTiming();
+    while (client.receive(0)) continue;
+    engine->link.inbox.drain(commands);
+    state.ResumeTiming();
+  }
+  const auto sent = static_cast<std::uint64_t>(state.iterations()) * count;
+  const std::uint64_t pings = static_cast<std::uint64_t>(state.iterations());
+  const std::uint64_t got = engine->link.counters.received - before;
+  state.SetItemsProcessed(static_cast<std::int64_t>(sent));
+  state.counters["lost_%"] =
+      got >= sent + pings ? 0 : 100.0 * static_cast<double>(sent + pings - got) / static_cast<double>(sent);
+}
+BENCHMARK(osc_burst)->Args({2000, 1})->Args({10000, 1})->Args({200000, 1})->Args({200000, 10})->UseRealTime();
+
+// a frame of 1000 bodies of 17 joints: numbers written
+void osc_frame_fill(benchmark::State& state) {
+  std::vector<FakeBody> bodies;
+  for (int i = 0; i < 1000; i++) bodies.push_back({"arm" + std::to_string(i), 17});
+  const Snapshot s = test_world(bodies);
+  StreamFrame frame(kTestOffsets);
+  frame.lay_out(s.roster, {});
+  for (auto _ : state) {
+    frame.fill(s);
+    benchmark::DoNotOptimize(frame.bytes().data());
+  }
+  state.counters["bytes"] = static_cast<double>(frame.bytes().size());
+  state.counters["datagrams"] = static_cast<double>(frame.datagram_sizes().size());
+}
+BENCHMARK(osc_frame_fill)->Unit(benchmark::kMicrosecond);
+
+// laid out anew, as after a body came or went
+void osc_frame_lay_out(benchmark::State& state) {
+  std::vector<FakeBody> bodies;
+  for (int i = 0; i < 1000; i++) bodies.push_back({"arm" + std::to_string(i), 17});
+  const Snapshot a = test_world(bodies);
+  const Snapshot b = test_world(bodies);
+  StreamFrame frame(kTestOffsets);
+  for (auto _ : state) {
+    frame.lay_out(a.roster, {});
+    frame.lay_out(b.roster, {});
+  }
+}
+BENCHMARK(osc_frame_lay_out)->Unit(benchmark::kMicrosecond);
+
+// the whole frame, sent over loopback to a client that reads in a thread of its own (range(2) 1) or to nobody (0);
+// range(0): bundle bytes, range(1): whether the kernel may cut
+void osc_frame_send(benchmark::State& state) {
+  std::vector<FakeBody> bodies;
+  for (int i = 0; i < 1000; i++) bodies.push_back({"arm" + std::to_string(i), 17});
+  const Snapshot s = test_world(bodies);
+  StreamTarget wish;
+  wish.bundle = static_cast<int>(state.range(0));
+  StreamFrame frame(kTestOffsets);
+  frame.lay_out(s.roster, wish);
+  const Socket sender = std::move(open_udp({}).value());
+  const Client client;
+  std::atomic<bool> stop{false};
+  std::atomic<std::uint64_t> got{0};
+  std::thread reader;
+  if (state.range(2) == 1) {
+    reader = std::thread([&] {
+      while (!stop) got += client.receive(50).has_value() ? 1 : 0;
+    });
+  }
+  const Endpoint to = state.range(2) == 1 ? client.end() : Endpoint{0x7f000001, 9};
+  std::uint64_t sent = 0;
+  for (auto _ : state) {
+    bool segmentation = state.range(1) != 0;
+    frame.fill(s);
+    sent += send_batch(sender.fd(), to, frame.bytes(), frame.datagram_sizes(), segmentation).sent;
+    if (state.range(2) == 1) {
+      state.PauseTiming();
+      const timespec pause{0, 4'000'000};
+      nanosleep(&pause, nullptr);
+      state.ResumeTiming();
+    }
+  }
+  stop = true;
+  if (reader.joinable()) reader.join();
+  state.counters["datagrams"] = static_cast<double>(frame.datagram_sizes().size());
+  if (state.range(2) == 1) state.counters["read_%"] = 100.0 * static_cast<double>(got) / static_cast<double>(sent);
+}
+BENCHMARK(osc_frame_send)
+    ->ArgNames({"bundle", "gso", "reader"})
+    ->Args({1472, 1, 1})
+    ->Args({1472, 0, 1})
+    ->Args({1472, 1, 0})
+    ->Args({1472, 0, 0})
+    ->Args({0, 1, 1})
+    ->Args({0, 0, 1})
+    ->Args({8192, 1, 1})
+    ->Args({65504, 1, 1})
+    ->Unit(benchmark::kMicrosecond);
+
+}  // namespace
+}  // namespace limber
