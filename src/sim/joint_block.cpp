@@ -80,8 +80,7 @@ void JointBlock::build(const btSolverConstraint* rows, bool bounded, int locked,
   if (!bounded) return;
 
   // the bounded row after the locked ones: its Schur complement
-  bounded_soft_ = softness(*bounded_);
-  const float own = coupled(*bounded_, *bounded_) + bounded_soft_;
+  const float own = coupled(*bounded_, *bounded_);
   Lanes lean[2] = {zero(), zero()};
   float coupling[kMost] = {};
   for (int i = 0; i < locked; ++i) {
@@ -150,8 +149,8 @@ btScalar JointBlock::solve_locked(PairVelocity& v) {
     const btSolverConstraint& row = *bounded_;
     const Lanes leaned = lean_[0] * residual[0] + lean_[1] * residual[1];
     const btScalar before = row.m_appliedImpulse;
-    const btScalar left = row.m_rhsPenetration - bounded_soft_ * before - total(rate(row, v)) -
-                          ((leaned[0] + leaned[1]) + (leaned[2] + leaned[3]));
+    const btScalar left =
+        row.m_rhsPenetration - total(rate(row, v)) - ((leaned[0] + leaned[1]) + (leaned[2] + leaned[3]));
     const btScalar after = std::min(std::max(before + left * bounded_step_, row.m_lowerLimit), row.m_upperLimit);
     const btScalar turned = after - before;
     row.m_appliedImpulse = after;

@@ -45,7 +45,7 @@ class JointBlock {
  public:
   static constexpr int kMost = 6;
 
-  /// `rows`: first the bounded row, if there is one, then `locked` rows, at most six in number. A row's
+  /// `rows`: first the bounded row, a stiff one, if there is one, then `locked` rows, at most six in number. A row's
   /// m_rhsPenetration holds the rate it wants, less the rate it has; its m_cfm and m_jacDiagABInv are already scaled by
   /// IslandSolver.
   void build(const btSolverConstraint* rows, bool bounded, int locked, const btVector3& inverse_mass_a,
@@ -65,8 +65,7 @@ class JointBlock {
   const btSolverConstraint* rows_ = nullptr;  // the locked ones
   const btSolverConstraint* bounded_ = nullptr;
   int locked_ = 0;
-  float bounded_step_ = 0;  // 1 / Schur complement of the bounded row
-  float bounded_soft_ = 0;
+  float bounded_step_ = 0;   // 1 / Schur complement of the bounded row
   Lanes inverse_[kMost][2];  // columns of K^-1, K = J M^-1 J' + softness of the locked rows
   Lanes lean_[2];            // K^-1 k: what the locked impulses give per bounded impulse
   Lanes wanted_[2];

@@ -180,10 +180,11 @@ void JointConstraint::plan_motor(int axis) {
   if (s.drive == AxisDrive::servo) {
     velocity = servo_velocity(axis);
   } else if (s.limited()) {
-    // a spinning motor brakes before the limit instead of pressing through it
-    const double x = value(axis);
-    const btScalar up = std::max(static_cast<btScalar>(static_cast<double>(s.upper) - x), btScalar(0)) / h_;
-    const btScalar down = std::min(static_cast<btScalar>(static_cast<double>(s.lower) - x), btScalar(0)) / h_;
+    // a spinning motor brakes before the limit instead of pressing through it; beyond it, it lets the limit repair
+    const btScalar to_upper = static_cast<btScalar>(static_cast<double>(s.upper) - value(axis)) / h_;
+    const btScalar to_lower = static_cast<btScalar>(static_cast<double>(s.lower) - value(axis)) / h_;
+    const btScalar up = to_upper < 0 ? to_upper * s.stop_erp : to_upper;
+    const btScalar down = to_lower > 0 ? to_lower * s.stop_erp : to_lower;
     velocity = std::clamp(velocity, down, up);
   }
   add_row(axis, velocity, 0, -most, most, RowKind::motor);

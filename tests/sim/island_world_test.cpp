@@ -165,6 +165,30 @@ TEST(IslandWorld, AppliedForcesAreTheMeanOverTheTick) {
   EXPECT_NEAR(joint.rate(0), 0, 1e-6);
 }
 
+TEST(IslandWorld, AnArmOfTenPartsFollowsItsServosWithTenIterations) {
+  // nine hinges, ±0.3 rad at 0.5 Hz under gravity: the error stays below 3 degrees (stock Bullet: 1.2 rad)
+  Rig rig;
+  rig.world.setGravity(btVector3(0, 0, -9.81f));
+  rig.world.getSolverInfo().m_numIterations = 10;
+  btRigidBody* parent = &rig.ground();
+  for (int i = 1; i < 10; ++i) {
+    btRigidBody& child = rig.part(1, {0.0042, 0.0042, 0.0017}, {{0, 0, -0.2 * i}, quat_identity()});
+    const Quat axis = i % 2 ? quat_axis({0, 1, 0}, kPi / 2) : quat_axis({1, 0, 0}, -kPi / 2);
+    rig.joint(*parent, child, {{0, 0, -0.1}, axis}, {{0, 0, 0.1}, axis});
+    parent = &child;
+  }
+  double worst = 0;
+  for (int i = 0; i < 1440; ++i) {
+    const double target = 0.3 * std::sin(kPi * i * kRigStep);
+    for (auto& joint : rig.joints) joint->set_axis(5, servo_axis(limited_axis(-1.4, 1.4), target, 2, 10000));
+    rig.steps(1);
+    for (auto& joint : rig.joints) {
+      if (i >= 1200) worst = std::max(worst, std::fabs(joint->value(5) - target));
+    }
+  }
+  EXPECT_LT(worst, 0.05);
+}
+
 TEST(IslandWorld, BulletsOwnConstraintsWorkBesideOurs) {
   Rig rig;
   btRigidBody& first = rig.part(1, Vec3(0.1), {{0.5, 0, 0}, quat_identity()});

@@ -71,6 +71,8 @@ TEST(JointMotorRows, ASpinStopsAtTheLimitWithoutPassingIt) {
     }
     EXPECT_NEAR(d.x(), 4, 1e-4) << force;
     EXPECT_LT(farthest, 4.0005) << force;
+    d.steps(60);
+    EXPECT_NEAR(d.applied(), 0, 0.1) << force;  // it does not press on
   }
 }
 
@@ -181,6 +183,7 @@ TEST(JointMotorRows, ServoTargetsBeyondAHalfTurnAndBeyondLimits) {
     d.hinge.set_axis(axis, servo_axis(limited_axis(-8, 8), -100, 5, 1000));
     d.steps(960);
     EXPECT_NEAR(d.x(), -8, 1e-4) << axis;
+    EXPECT_NEAR(d.applied(), 0, 1e-2) << axis;  // it does not press on the limit
   }
 }
 
@@ -292,6 +295,27 @@ TEST(JointMotorRows, APendulumSwingsWithItsPeriod) {
     before = now;
   }
   EXPECT_NEAR((last - first) / 5 / period, 1, 1e-3);
+}
+
+TEST(JointMotorRows, OneJointIsExactAfterOneIteration) {
+  // the motor and the five locks are one block: more iterations find nothing to mend, saturated or not
+  for (const double force : {0.5, 1000.0}) {
+    Vec3 place[2];
+    for (int many = 0; many < 2; ++many) {
+      Rig rig;
+      rig.world.setGravity(btVector3(1, 2, -9.81f));
+      rig.world.getSolverInfo().m_numIterations = many ? 300 : 1;
+      btRigidBody& base = rig.part(3, {0.3, 0.2, 0.1});
+      btRigidBody& child = rig.part(1, {0.02, 0.05, 0.03}, {{0.4, 0.3, 0.2}, quat_identity()});
+      JointConstraint& hinge = rig.joint(base, child, {{0.2, 0.1, 0}, quat_euler(0.3, 0.2, 0.1)},
+                                         {{-0.2, -0.2, -0.2}, quat_euler(0.3, 0.2, 0.1)});
+      hinge.set_axis(5, spin_axis(free_axis(), 3, force));
+      base.setAngularVelocity(btVector3(1, -2, 0.5f));
+      rig.steps(30);
+      place[many] = from_bt(child.getCenterOfMassPosition());
+    }
+    EXPECT_LT(glm::length(place[0] - place[1]), 5e-6) << force;
+  }
 }
 
 TEST(JointMotorRows, AMirroredRobotMovesMirrored) {
