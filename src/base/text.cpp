@@ -156,9 +156,12 @@ bool same_name(std::string_view a, std::string_view b) {
 
 bool is_pattern(std::string_view name) { return name.find_first_of("?*[{") != std::string_view::npos; }
 
-bool pattern_match(std::string_view pattern, std::string_view name) {
-  if (!is_pattern(pattern)) return pattern == name;
-  return pattern == name || Matcher{}.match(pattern, name);
+bool pattern_match(std::string_view pattern, std::string_view name, int* steps) {
+  if (!is_pattern(pattern) || pattern == name) return pattern == name;
+  Matcher matcher;
+  const bool hit = matcher.match(pattern, name);
+  if (steps != nullptr) *steps += matcher.steps;
+  return hit;
 }
 
 std::string_view nearest_name(std::string_view written, std::span<const std::string_view> names) {

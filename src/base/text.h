@@ -16,7 +16,8 @@ bool same_name(std::string_view a, std::string_view b);
 
 /// OSC's pattern rules for one name: `?` `*` `[a-z]` `[!a]` `{ab,cd}`. Bounded: a pattern that needs more than
 /// 20 000 steps, or 200 stars and braces at a time, matches nothing. A malformed pattern matches only itself.
-bool pattern_match(std::string_view pattern, std::string_view name);
+/// The steps taken are added to `steps`.
+bool pattern_match(std::string_view pattern, std::string_view name, int* steps = nullptr);
 /// Whether a name holds any of OSC's pattern characters.
 bool is_pattern(std::string_view name);
 

@@ -1,6 +1,8 @@
 // Addresses to places: an exact walk, and a walk by pattern.
 #include "params/catalog.h"
 
+#include <unordered_set>
+
 #include <fmt/format.h>
 
 #include "base/text.h"
@@ -31,30 +33,36 @@ struct PatternWalk {
   std::vector<std::string_view> pieces;
   std::size_t limit;
   std::vector<Place> found;
-  int budget = 2000000;  // names looked at: a pattern's cost is bounded whatever it says
+  std::unordered_set<std::uint64_t> been;  // several `//` lead to one place by many ways: each is gone once
+  int spent = 0;
+  static constexpr int kMost = 20000000;  // names looked at and steps of matching: a fraction of a second
 
+  bool over() { return found.size() >= limit || ++spent > kMost; }
   bool name_matches(NodeId id, std::string_view piece) {
     const std::string& name = store.name(id);
     if (!is_pattern(piece)) {
       const bool exact = name == piece || name == unescape_name(piece);
       return exact || (house_name(store, id) && same_name(name, piece));
     }
-    return pattern_match(piece, name) || pattern_match(piece, escape_name(name));
+    return pattern_match(piece, name, &spent) || pattern_match(piece, escape_name(name), &spent);
   }
 
   void rows(NodeId id, std::string_view piece) {
+    const bool pattern = is_pattern(piece);
+    const std::string plain = pattern ? plain_name(piece) : "";
     for (const Row& row : store.table(id).rows()) {
-      if (found.size() >= limit || --budget < 0) return;
-      const bool hit = is_pattern(piece)
-                           ? pattern_match(piece, row.name) || pattern_match(plain_name(piece), plain_name(row.name))
-                           : same_name(row.name, piece);
+      if (over()) return;
+      const bool hit =
+          pattern ? pattern_match(piece, row.name, &spent) || pattern_match(plain, plain_name(row.name), &spent)
+                  : same_name(row.name, piece);
       if (hit) found.push_back({id, &row});
     }
   }
 
   void walk(NodeId id, std::size_t at) {
-    if (found.size() >= limit || at >= pieces.size() || --budget < 0) return;
+    if (at >= pieces.size() || over()) return;
     if (pieces[at].empty()) {  // `//`: any depth, this one included
+      if (!been.insert(std::uint64_t{id.slot} << 32 | at).second) return;
       walk(id, at + 1);
       for (const NodeId child : store.children(id)) walk(child, at);
       return;
@@ -67,7 +75,7 @@ struct PatternWalk {
       return;
     }
     for (const NodeId child : store.children(id)) {
-      if (--budget < 0) return;
+      if (over()) return;
       if (name_matches(child, pieces[at])) walk(child, at + 1);
     }
   }
@@ -104,7 +112,7 @@ Result<std::vector<Place>> match_places(const Store& store, std::string_view pat
     if (!place) return Error{place.error()};
     return std::vector<Place>{*place};
   }
-  PatternWalk walk{store, split(pattern.substr(1), '/'), limit, {}};
+  PatternWalk walk{store, split(pattern.substr(1), '/'), limit, {}, {}};
   walk.walk(store.root(), 0);
   return std::move(walk.found);
 }

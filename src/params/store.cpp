@@ -86,7 +86,12 @@ NodeId Store::add_group(NodeId parent, std::string name) {
   return add(group_table(), parent, std::move(name), nullptr);
 }
 
-bool Store::is_group(NodeId id) const { return nodes_[id.slot].table == &group_table(); }
+bool Store::is_group(NodeId id) const { return alive(id) && nodes_[id.slot].table == &group_table(); }
+
+const Store::Node& Store::nobody() {
+  static const Node none{&group_table(), "", nullptr, {}, {}, 0};
+  return none;
+}
 
 void Store::release(NodeId id) {
   for (const NodeId child : nodes_[id.slot].children) release(child);
@@ -130,6 +135,7 @@ std::string Store::path(NodeId id) const {
 }
 
 Result<SetOutcome> Store::set(NodeId id, std::string_view row, std::span<const double> values) {
+  if (!alive(id)) return Error{"this thing no longer exists"};
   return set(id, table(id).at(row), values);
 }
 
@@ -137,7 +143,7 @@ Result<SetOutcome> Store::set(NodeId id, const Row& row, std::span<const double>
   const auto where = [&] { return fmt::format("{}/{}", path(id), row.name); };
   if (!alive(id)) return Error{"this thing no longer exists"};
   if (!row.writable() || (row.view() && row.write == nullptr)) {
-    return Error{fmt::format("{} can be read, not set", where())};
+    return Error{fmt::format("{} can be {}, not set", where(), row.kind == RowKind::action ? "done" : "read")};
   }
   if (values.size() != row.width) {
     return Error{
@@ -184,12 +190,13 @@ Result<SetOutcome> Store::set(NodeId id, const Row& row, std::span<const double>
 }
 
 void Store::get(NodeId id, const Row& row, double* out) const {
+  if (!alive(id)) return (void)std::fill_n(out, row.width, 0.0);
   if (row.view()) return row.read(nodes_[id.slot].thing, out);
   if (row.stored()) std::copy_n(values(id, row), row.width, out);
 }
 
 void Store::mark(NodeId id, const Row& row) {
-  if (row.effect == nullptr) return;
+  if (row.effect == nullptr || !alive(id)) return;
   Node& node = nodes_[id.slot];
   if (node.marks == 0) marked_.push_back(id);
   node.marks |= std::uint64_t{1} << row.index;

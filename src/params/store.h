@@ -54,11 +54,12 @@ class Store {
   bool alive(NodeId id) const {
     return id.slot < slots_.size() && slots_[id.slot].generation == id.generation && (id.generation & 1u) != 0;
   }
-  const Table& table(NodeId id) const { return *nodes_[id.slot].table; }
-  const std::string& name(NodeId id) const { return nodes_[id.slot].name; }
-  void* thing(NodeId id) const { return nodes_[id.slot].thing; }
-  NodeId parent(NodeId id) const { return nodes_[id.slot].parent; }
-  std::span<const NodeId> children(NodeId id) const { return nodes_[id.slot].children; }
+  // Of a stale id: a table without rows, no name, null, a null id, no children.
+  const Table& table(NodeId id) const { return *node(id).table; }
+  const std::string& name(NodeId id) const { return node(id).name; }
+  void* thing(NodeId id) const { return node(id).thing; }
+  NodeId parent(NodeId id) const { return node(id).parent; }
+  std::span<const NodeId> children(NodeId id) const { return node(id).children; }
   bool is_group(NodeId id) const;
   /// The child of exactly that name, or a null id.
   NodeId child(NodeId parent, std::string_view name) const;
@@ -142,6 +143,8 @@ class Store {
     }
   };
 
+  const Node& node(NodeId id) const { return alive(id) ? nodes_[id.slot] : nobody(); }
+  static const Node& nobody();
   double* slot_values(NodeId id, const Row& row) {
     NodeSlot& slot = slots_[id.slot];
     return row.live ? live_.data() + slot.live + row.offset : kept_.data() + slot.kept + row.offset;

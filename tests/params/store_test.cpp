@@ -1,0 +1,258 @@
+// The store: its one door, marks, views, slots and generations, blocks that are used again.
+#include "params/store.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <set>
+
+#include "params/toy.h"
+
+namespace limber {
+namespace {
+
+using test::read;
+using test::set;
+using test::Toy;
+using Numbers = std::vector<double>;
+
+constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+constexpr double kInf = std::numeric_limits<double>::infinity();
+
+struct StoreTest : testing::Test {
+  NodeId add(const char* name) { return store.add(Toy::table(), toys, name, &toy); }
+  Store store;
+  Toy toy;
+  NodeId toys = store.add_group(store.root(), "toys");
+  NodeId id = add("bear");
+  void SetUp() override {
+    toy.store = &store;
+    toy.id = id;
+  }
+};
+
+TEST_F(StoreTest, StartsWithTheTablesDefaults) {
+  EXPECT_EQ(read(store, id, "mass"), Numbers{1});
+  EXPECT_EQ(read(store, id, "size"), (Numbers{1, 2, 3}));
+  EXPECT_EQ(read(store, id, "active"), (Numbers{0, 1, 0}));
+  EXPECT_EQ(read(store, id, "rotation"), (Numbers{0, 0, 0, 1}));
+  EXPECT_EQ(read(store, id, "mode"), Numbers{1});
+}
+
+TEST_F(StoreTest, ClampsEachNumberAndSaysSo) {
+  const struct {
+    const char* row;
+    Numbers given, kept;
+    bool clamped;
+  } cases[] = {
+      {"mass", {2.5}, {2.5}, false},
+      {"mass", {0.1}, {0.5}, true},
+      {"mass", {11}, {10}, true},
+      {"mass", {10}, {10}, false},
+      {"size", {9, -9, 0}, {5, -5, 0}, true},
+      {"count", {2.4}, {2}, false},
+      {"count", {2.6}, {3}, false},
+      {"count", {-1}, {0}, true},
+      {"awake", {0}, {0}, false},
+      {"awake", {0.4}, {0}, false},
+      {"awake", {7}, {1}, false},
+      {"awake", {-3}, {0}, false},
+      {"active", {1, 0, 5}, {1, 0, 1}, false},
+      {"mode", {2}, {2}, false},
+      {"rotation", {0, 0, 0.5, 0.5}, {0, 0, std::sqrt(0.5), std::sqrt(0.5)}, false},
+  };
+  for (const auto& c : cases) {
+    const auto outcome = set(store, id, c.row, c.given);
+    ASSERT_TRUE(outcome) << outcome.error();
+    EXPECT_EQ(outcome->clamped, c.clamped) << c.row << c.given[0];
+    const Numbers kept = read(store, id, c.row);
+    for (std::size_t i = 0; i < kept.size(); i++) EXPECT_NEAR(kept[i], c.kept[i], 1e-15) << c.row << c.given[0];
+  }
+}
+
+TEST_F(StoreTest, RefusesWhatIsNoValueAndAppliesNothingOfIt) {
+  const Numbers before(store.kept().begin(), store.kept().end());
+  const Numbers live(store.live().begin(), store.live().end());
+  store.apply_marks();
+  const std::uint64_t version = store.kept_version();
+  const int effects = toy.mass_effects + toy.pose_effects;
+  toy.holds_mass = true;
+  const struct {
+    const char* row;
+    Numbers given;
+    const char* text;
+  } cases[] = {
+      {"mass", {kNan}, "/toys/bear/mass takes numbers; nan is none"},
+      {"mass", {kInf}, "/toys/bear/mass takes numbers; inf is none"},
+      {"mass", {-kInf}, "/toys/bear/mass takes numbers; -inf is none"},
+      {"size", {1, kNan, 1}, "/toys/bear/size takes numbers; nan is none"},
+      {"rotation", {0, 0, 0, kNan}, "/toys/bear/rotation takes numbers; nan is none"},
+      {"rotation", {0, 0, 0, 0}, "/toys/bear/rotation takes a rotation; 0 0 0 0 is none"},
+      {"active", {1, kNan, 0}, "/toys/bear/active takes numbers; nan is none"},
+      {"mass", {}, "/toys/bear/mass takes 1 number, not 0"},
+      {"mass", {1, 2}, "/toys/bear/mass takes 1 number, not 2"},
+      {"size", {1}, "/toys/bear/size takes 3 numbers, not 1"},
+      {"mode", {3}, "/toys/bear/mode has the choices off, on, auto; 3 is none of them"},
+      {"mode", {-1}, "/toys/bear/mode has the choices off, on, auto; -1 is none of them"},
+      {"speed", {1}, "/toys/bear/speed can be read, not set"},
+      {"answer", {1}, "/toys/bear/answer can be read, not set"},
+      {"kick", {}, "/toys/bear/kick can be done, not set"},
+      {"mass", {7}, "/toys/bear/mass: it is nailed down"},
+  };
+  for (const auto& c : cases) {
+    const auto outcome = set(store, id, c.row, c.given);
+    ASSERT_FALSE(outcome) << c.row;
+    EXPECT_EQ(outcome.error(), c.text);
+  }
+  store.apply_marks();
+  EXPECT_TRUE(std::equal(before.begin(), before.end(), store.kept().begin()));
+  EXPECT_TRUE(std::equal(live.begin(), live.end(), store.live().begin()));
+  EXPECT_EQ(store.kept_version(), version);
+  EXPECT_EQ(toy.mass_effects + toy.pose_effects, effects);
+}
+
+TEST_F(StoreTest, AnEffectHappensOnceBeforeTheNextStep) {
+  store.apply_marks();  // a new node's rows are all marked
+  EXPECT_EQ(toy.mass_effects, 1);
+  EXPECT_EQ(toy.pose_effects, 1);
+  store.apply_marks();
+  EXPECT_EQ(toy.mass_effects, 1);
+  for (int i = 0; i < 5; i++) ASSERT_TRUE(set(store, id, "mass", {2.0 + i}));
+  ASSERT_TRUE(set(store, id, "density", {3}));  // the same effect
+  EXPECT_EQ(toy.mass_effects, 1);
+  store.apply_marks();
+  EXPECT_EQ(toy.mass_effects, 2);
+  EXPECT_EQ(toy.pose_effects, 1);
+  ASSERT_TRUE(set(store, id, "position", {1, 2, 3}));
+  ASSERT_TRUE(set(store, id, "count", {5}));  // without effect
+  store.apply_marks();
+  EXPECT_EQ(toy.pose_effects, 2);
+  EXPECT_EQ(toy.mass_effects, 2);
+}
+
+TEST_F(StoreTest, AnEffectThatMarksItselfDoesNotGoOnForEver) {
+  store.apply_marks();
+  const int rounds = toy.rounds;
+  EXPECT_GT(rounds, 1);
+  EXPECT_LT(rounds, 10);
+  store.apply_marks();
+  EXPECT_GT(toy.rounds, rounds);
+}
+
+TEST_F(StoreTest, AViewReadsAndWritesWhatIsBehindIt) {
+  ASSERT_TRUE(set(store, id, "twice", {6}));
+  EXPECT_EQ(toy.doubled, 3);
+  EXPECT_EQ(read(store, id, "twice"), Numbers{6});
+  const auto outcome = set(store, id, "twice", {100});
+  ASSERT_TRUE(outcome);
+  EXPECT_TRUE(outcome->clamped);
+  EXPECT_EQ(toy.doubled, 5);
+  EXPECT_EQ(read(store, id, "answer"), Numbers{42});
+}
+
+TEST_F(StoreTest, CountsWritesToKeptValuesOnly) {
+  const std::uint64_t start = store.kept_version();
+  ASSERT_TRUE(set(store, id, "position", {1, 1, 1}));
+  EXPECT_EQ(store.kept_version(), start);
+  ASSERT_TRUE(set(store, id, "mass", {2}));
+  EXPECT_GT(store.kept_version(), start);
+  const std::uint64_t structure = store.structure_version();
+  add("duck");
+  EXPECT_GT(store.structure_version(), structure);
+}
+
+TEST_F(StoreTest, AStaleIdIsAnAnswer) {
+  store.remove(id);
+  const NodeId far{4000000000u, 1};
+  for (const NodeId gone : {id, NodeId{}, far}) {
+    EXPECT_FALSE(store.alive(gone));
+    EXPECT_EQ(store.thing(gone), nullptr);
+    EXPECT_EQ(store.name(gone), "");
+    EXPECT_EQ(store.path(gone), "");
+    EXPECT_TRUE(store.children(gone).empty());
+    EXPECT_TRUE(store.parent(gone).null());
+    EXPECT_FALSE(store.is_group(gone));
+    const double one = 1;
+    const auto outcome = store.set(gone, Toy::table().at("mass"), {&one, 1});
+    ASSERT_FALSE(outcome);
+    EXPECT_EQ(outcome.error(), "this thing no longer exists");
+    EXPECT_FALSE(store.set(gone, "mass", {&one, 1}));
+    double out = 7;
+    store.get(gone, Toy::table().at("mass"), &out);
+    EXPECT_EQ(out, 0);
+    store.mark(gone, Toy::table().at("mass"));
+    store.remove(gone);
+  }
+  store.apply_marks();
+  EXPECT_EQ(toy.mass_effects, 0);
+}
+
+TEST_F(StoreTest, SlotsAndBlocksAreUsedAgainGenerationsNever) {
+  const std::size_t kept = store.kept().size();
+  const std::size_t live = store.live().size();
+  std::set<NodeId> seen;
+  NodeId last = id;
+  for (int i = 0; i < 100; i++) {
+    ASSERT_TRUE(set(store, last, "mass", {9}));
+    ASSERT_TRUE(set(store, last, "position", {1, 2, 3}));
+    store.remove(last);
+    EXPECT_FALSE(store.alive(last));
+    last = add("bear");
+    EXPECT_TRUE(seen.insert(last).second);
+    EXPECT_EQ(last.slot, id.slot);
+    // nothing is left of the one before
+    EXPECT_EQ(read(store, last, "mass"), Numbers{1});
+    EXPECT_EQ(read(store, last, "position"), (Numbers{0, 0, 0}));
+  }
+  EXPECT_EQ(store.kept().size(), kept);
+  EXPECT_EQ(store.live().size(), live);
+}
+
+TEST_F(StoreTest, RemovingANodeRemovesAllBelowIt) {
+  const NodeId house = store.add_group(toys, "house");
+  const NodeId inner = store.add(Toy::table(), house, "doll", &toy);
+  const NodeId deep = store.add(Toy::table(), inner, "button", &toy);
+  store.remove(house);
+  for (const NodeId gone : {house, inner, deep}) EXPECT_FALSE(store.alive(gone));
+  EXPECT_TRUE(store.alive(id));
+  EXPECT_EQ(store.children(toys).size(), 1u);
+  EXPECT_TRUE(store.child(toys, "house").null());
+  EXPECT_EQ(store.path(id), "/toys/bear");
+  store.remove(store.root());
+  EXPECT_TRUE(store.alive(store.root()));
+}
+
+TEST_F(StoreTest, TheDeadLeaveZeros) {
+  ASSERT_TRUE(set(store, id, "position", {1, 2, 3}));
+  store.remove(id);
+  for (const double v : store.kept()) EXPECT_EQ(v, 0);
+  for (const double v : store.live()) EXPECT_EQ(v, 0);
+}
+
+TEST_F(StoreTest, ChildrenKeepTheirOrderAndWalkIsDepthFirst) {
+  add("duck");
+  const NodeId cat = add("cat");
+  store.add_group(cat, "tail");
+  store.remove(id);
+  add("bear");
+  std::vector<std::string> order;
+  store.walk(toys, [&](NodeId n) { order.push_back(store.path(n)); });
+  EXPECT_EQ(order, (std::vector<std::string>{"/toys", "/toys/duck", "/toys/cat", "/toys/cat/tail", "/toys/bear"}));
+}
+
+TEST_F(StoreTest, TheViewShowsWhereTheNumbersAre) {
+  for (int i = 0; i < 50; i++) add(std::to_string(i).c_str());
+  ASSERT_TRUE(set(store, id, "size", {4, 5, 1}));
+  const StoreView& view = *store.view();
+  ASSERT_GT(view.slot_count, id.slot);
+  const NodeSlot& slot = view.slots[id.slot];
+  EXPECT_EQ(slot.generation, id.generation);
+  EXPECT_EQ(store.tables()[slot.table], &Toy::table());
+  EXPECT_EQ(view.kept[slot.kept + Toy::table().at("size").offset + 1], 5);
+  EXPECT_EQ(view.live[slot.live + Toy::table().at("rotation").offset + 3], 1);
+}
+
+}  // namespace
+}  // namespace limber
