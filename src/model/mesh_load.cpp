@@ -22,6 +22,7 @@
 #include "base/text.h"
 #include "model/hull.h"
 #include "model/mass_properties.h"
+#include "model/mesh_collada.h"
 #include "model/shape_recognise.h"
 #include "model/urdf_text.h"
 
@@ -204,6 +205,9 @@ Result<std::shared_ptr<const MeshModel>> mesh_from_bytes(std::string_view bytes,
   const std::string fault = format == MeshFormat::stl ? stl_fault(bytes) : std::string();
   if (!fault.empty()) return Error{fmt::format("{}. Export it again.", fault)};
   try {
+    Result<std::string> collada = format == MeshFormat::dae ? clean_collada(bytes) : std::string();
+    if (!collada) return Error{collada.error()};
+    if (format == MeshFormat::dae) bytes = *collada;
     Result<Soup> soup = read_soup(bytes, kEndings[static_cast<std::size_t>(format)]);
     if (!soup) return Error{soup.error()};
     for (Vec3& v : soup->vertices) {

@@ -19,6 +19,8 @@ void must(bool condition) {
 // assimp's STL reader leaks the scene that it gave up on: a few kB for each broken file
 extern "C" const char* __lsan_default_suppressions() { return "leak:libassimp"; }
 
+extern "C" const char* __lsan_default_options() { return "print_suppressions=0"; }
+
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   if (size == 0) return 0;
   constexpr std::array kFormats{limber::MeshFormat::stl, limber::MeshFormat::obj, limber::MeshFormat::dae};

@@ -11,9 +11,6 @@ namespace {
 
 using test::import_text;
 using test::says;
-using test::try_import;
-
-constexpr double kHalf = kPi / 2;
 
 // an upright arm: hinge about z at 1 m, hinge about -y at 2 m, slide along a slanted axis
 constexpr const char* kArm = R"(<?xml version="1.0"?>
@@ -55,43 +52,6 @@ TEST(UrdfImport, JointsInFileOrderAtABranch) {
   EXPECT_EQ(m.links[1].name, "y");
   EXPECT_EQ(m.links[2].name, "x");
   EXPECT_EQ(m.links[3].name, "x2");
-}
-
-TEST(UrdfImport, HomePoseIsForwardKinematicsAtZero) {
-  const BodyModel m = import_text(kArm);
-  // the elbow's origin turns by 90 degrees about z, so the slide's 1 m along x lies along world y
-  test::expect_near(m.links[1].home.position, {0, 0, 1}, 1e-12);
-  test::expect_near(m.links[2].home.position, {0, 0, 2}, 1e-12);
-  test::expect_near(m.links[3].home.position, {0, 1, 2}, 1e-12);
-  EXPECT_NEAR(test::angle_between(m.links[3].home.rotation, quat_axis({0, 0, 1}, kHalf)), 0, 1e-12);
-}
-
-TEST(UrdfImport, StartsAtTheNearestAllowedAngle) {
-  const BodyModel m = import_text(kArm);
-  // elbow 0 is below 0.5: it starts at 0.5 about -y of its frame, whose x is world y
-  EXPECT_DOUBLE_EQ(m.joints[1].start, 0.5);
-  test::expect_near(m.links[3].start.position, {0, std::cos(0.5), 2 + std::sin(0.5)}, 1e-12);
-  EXPECT_TRUE(says(m, Severity::note, "starts at 0.5", 7)) << test::all_problems(m);
-}
-
-TEST(UrdfImport, AskedPoseIsClampedAndPlaced) {
-  ImportOptions options;
-  options.pose = {{"shoulder", kHalf}, {"slide", 9.0}};
-  const BodyModel m = import_text(kArm, options);
-  EXPECT_DOUBLE_EQ(m.joints[0].start, kHalf);
-  EXPECT_DOUBLE_EQ(m.joints[2].start, 0.2);
-  // shoulder turns y to -x; the slide moves 0.2 m along (1,1,0)/sqrt(2) of the lower link
-  const double s = 0.2 / std::sqrt(2.0);
-  const double along = 1 + s;
-  test::expect_near(m.links[3].start.position, {-along * std::cos(0.5), -s, 2 + along * std::sin(0.5)}, 1e-12);
-}
-
-TEST(UrdfImport, PoseOfAnUnknownJointIsRefusedWithNearName) {
-  ImportOptions options;
-  options.pose = {{"elbov", 1.0}};
-  const auto refused = try_import(kArm, options);
-  ASSERT_FALSE(refused);
-  EXPECT_NE(refused.error().find("elbow"), std::string::npos) << refused.error();
 }
 
 TEST(UrdfImport, AxesAreUnitAndFramesHaveThemAsZ) {
@@ -192,154 +152,6 @@ constexpr const char* kFixed = R"(<robot name="r"><link name="base"/>
 <joint name="j" type="continuous"><parent link="base"/><child link="a"/><axis xyz="0 0 1"/></joint>
 <joint name="weld" type="fixed"><parent link="a"/><child link="b"/><origin xyz="0.4 0 0" rpy="0 0 1.5707963267948966"/></joint>
 <joint name="mark_weld" type="fixed"><parent link="b"/><child link="mark"/><origin xyz="0 0 1"/></joint></robot>)";
-
-TEST(UrdfImport, FixedChildrenAreMergedWithTheirInertia) {
-  const BodyModel m = import_text(kFixed);
-  ASSERT_EQ(m.links.size(), 2u);
-  ASSERT_EQ(m.joints.size(), 1u);
-  const Inertial& i = m.links[1].inertial;
-  EXPECT_DOUBLE_EQ(i.mass, 4);
-  // b's centre lies at (0.4, 0.1, 0); the sum's at 3/4 of it
-  test::expect_near(i.center, {0.3, 0.075, 0}, 1e-12);
-  // Steiner with the reduced mass 0.75 kg and d² = 0.17 m²; the turn exchanges b's x and y
-  EXPECT_NEAR(i.tensor[0][0], 0.1 + 0.2 + 0.75 * 0.01, 1e-12);
-  EXPECT_NEAR(i.tensor[1][1], 0.2 + 0.1 + 0.75 * 0.16, 1e-12);
-  EXPECT_NEAR(i.tensor[2][2], 0.25 + 0.25 + 0.75 * 0.17, 1e-12);
-  EXPECT_NEAR(i.tensor[0][1], -0.75 * 0.04, 1e-12);
-  ASSERT_EQ(m.links[1].collisions.size(), 2u);
-  test::expect_near(m.links[1].collisions[1].origin.position, {0.4, 0.1, 0}, 1e-12);
-  ASSERT_EQ(m.merged.size(), 2u);
-  EXPECT_EQ(m.merged[1].name, "mark");
-  EXPECT_EQ(m.merged[1].link, 1);
-  test::expect_near(m.merged[1].offset.position, {0.4, 0, 1}, 1e-12);
-  EXPECT_EQ(m.file_links.size(), 4u);
-  EXPECT_EQ(m.file_joints.size(), 3u);
-}
-
-TEST(UrdfImport, FixedJointsAreKeptWhenAsked) {
-  ImportOptions options;
-  options.keep_fixed = true;
-  const BodyModel m = import_text(kFixed, options);
-  // the frame without mass is merged all the same: it would be nailed to the world
-  ASSERT_EQ(m.links.size(), 3u);
-  ASSERT_EQ(m.joints.size(), 2u);
-  EXPECT_EQ(m.joints[1].type, JointType::fixed);
-  EXPECT_DOUBLE_EQ(m.links[2].inertial.mass, 3);
-  ASSERT_EQ(m.merged.size(), 1u);
-  EXPECT_EQ(m.merged[0].name, "mark");
-}
-
-TEST(UrdfImport, RootWithoutMassIsStaticUnlessLetGo) {
-  const char* text =
-      R"(<robot name="r"><link name="a"><collision><geometry><box size="0.1 0.2 0.5"/></geometry></collision></link></robot>)";
-  EXPECT_DOUBLE_EQ(import_text(text).links[0].inertial.mass, 0);
-  ImportOptions options;
-  options.fixed_base = false;
-  const Inertial free = import_text(text, options).links[0].inertial;
-  EXPECT_NEAR(free.mass, 10, 1e-12);
-  EXPECT_NEAR(free.tensor[0][0], 10.0 / 12 * (0.04 + 0.25), 1e-12);
-}
-
-TEST(UrdfImport, RootWithMassFloatsUnlessFixed) {
-  const char* text = R"(<robot name="r"><link name="a"><inertial><mass value="2"/>
-    <inertia ixx="1" ixy="0" ixz="0" iyy="1" iyz="0" izz="1"/></inertial></link></robot>)";
-  EXPECT_DOUBLE_EQ(import_text(text).links[0].inertial.mass, 2);
-  ImportOptions options;
-  options.fixed_base = true;
-  const BodyModel fixed = import_text(text, options);
-  EXPECT_DOUBLE_EQ(fixed.links[0].inertial.mass, 0);
-  EXPECT_DOUBLE_EQ(fixed.file_links[0].mass, 2);
-}
-
-TEST(UrdfImport, MovingLinksWithoutMassGetTheirShapes) {
-  const BodyModel m = import_text(R"(<robot name="r"><link name="a"/>
-<link name="ball"><collision><origin xyz="0 0 0.2"/><geometry><sphere radius="0.1"/></geometry></collision></link>
-<link name="dot"/>
-<joint name="j" type="continuous"><parent link="a"/><child link="ball"/><axis xyz="0 0 1"/></joint>
-<joint name="k" type="continuous"><parent link="ball"/><child link="dot"/><axis xyz="0 0 1"/></joint></robot>)");
-  const double mass = 1000 * 4.0 / 3 * kPi * 0.001;
-  EXPECT_NEAR(m.links[1].inertial.mass, mass, 1e-12);
-  test::expect_near(m.links[1].inertial.center, {0, 0, 0.2}, 1e-15);
-  EXPECT_NEAR(m.links[1].inertial.tensor[1][1], 0.4 * mass * 0.01, 1e-12);
-  EXPECT_DOUBLE_EQ(m.links[2].inertial.mass, 0.001);
-  EXPECT_TRUE(says(m, Severity::warning, "no mass", 2)) << test::all_problems(m);
-  EXPECT_TRUE(says(m, Severity::warning, "no mass", 3));
-}
-
-TEST(UrdfImport, ImpossibleTensorsAreReplacedByTheShapes) {
-  const auto box = [](const char* inertia) {
-    return import_text(std::string(R"(<robot name="r"><link name="a"><inertial><mass value="6"/>)") + inertia +
-                       R"(</inertial><collision><geometry><box size="1 2 3"/></geometry></collision></link></robot>)");
-  };
-  const char* bad[] = {R"(<inertia ixx="0" ixy="0" ixz="0" iyy="0" iyz="0" izz="0"/>)",
-                       R"(<inertia ixx="-1" ixy="0" ixz="0" iyy="1" iyz="0" izz="1"/>)",
-                       R"(<inertia ixx="1" ixy="0" ixz="0" iyy="1" iyz="0" izz="3"/>)", ""};
-  for (const char* inertia : bad) {
-    const BodyModel m = box(inertia);
-    EXPECT_NEAR(m.links[0].inertial.tensor[0][0], 6.0 / 12 * (4 + 9), 1e-12) << inertia;
-    EXPECT_NEAR(m.links[0].inertial.tensor[2][2], 6.0 / 12 * (1 + 4), 1e-12) << inertia;
-    EXPECT_TRUE(says(m, Severity::warning, "shape's", 1)) << inertia << test::all_problems(m);
-  }
-  const BodyModel good = box(R"(<inertia ixx="1" ixy="0.1" ixz="0" iyy="1" iyz="0" izz="1.5"/>)");
-  EXPECT_DOUBLE_EQ(good.links[0].inertial.tensor[0][1], 0.1);
-}
-
-TEST(UrdfImport, InertialOriginTurnsTheTensor) {
-  const BodyModel m = import_text(R"(<robot name="r"><link name="a"><inertial>
-    <origin xyz="0.1 0.2 0.3" rpy="0 0 1.5707963267948966"/><mass value="1"/>
-    <inertia ixx="1" ixy="0" ixz="0" iyy="2" iyz="0" izz="2.5"/></inertial></link></robot>)");
-  test::expect_near(m.links[0].inertial.center, {0.1, 0.2, 0.3}, 1e-15);
-  EXPECT_NEAR(m.links[0].inertial.tensor[0][0], 2, 1e-12);
-  EXPECT_NEAR(m.links[0].inertial.tensor[1][1], 1, 1e-12);
-}
-
-TEST(UrdfImport, TinyMomentsAreRaisedForTheSolver) {
-  // a rod: about its own axis a thousandth of the large moments at least
-  const BodyModel m = import_text(R"(<robot name="r"><link name="a"><inertial><mass value="1"/>
-    <inertia ixx="0.1" ixy="0" ixz="0" iyy="0.1" iyz="0" izz="1e-9"/></inertial></link></robot>)");
-  EXPECT_NEAR(m.links[0].inertial.tensor[2][2], 1e-4, 1e-15);
-  EXPECT_NEAR(m.links[0].inertial.tensor[0][0], 0.1, 1e-15);
-  EXPECT_DOUBLE_EQ(m.file_links[0].tensor[2][2], 1e-9);
-}
-
-std::string finger(const char* mimic1, const char* mimic2) {
-  return fmt::format(R"(<robot name="r"><link name="a"/><link name="b"/><link name="c"/><link name="d"/>
-<joint name="i" type="revolute"><parent link="a"/><child link="b"/><axis xyz="0 0 1"/><limit lower="0.2" upper="1" effort="1" velocity="1"/></joint>
-<joint name="j" type="revolute"><parent link="b"/><child link="c"/><axis xyz="0 0 1"/><limit lower="-2" upper="2" effort="1" velocity="1"/>{}</joint>
-<joint name="k" type="revolute"><parent link="c"/><child link="d"/><axis xyz="0 0 1"/><limit lower="-2" upper="2" effort="1" velocity="1"/>{}</joint>
-</robot>)",
-                     mimic1, mimic2);
-}
-
-TEST(UrdfImport, MimicChainsAreResolvedToTheirLeader) {
-  const BodyModel m = import_text(finger(R"(<mimic joint="i" multiplier="2" offset="0.1"/>)",
-                                         R"(<mimic joint="j" multiplier="-0.5" offset="0.3"/>)"));
-  EXPECT_EQ(m.joints[1].mimic, 0);
-  EXPECT_EQ(m.joints[2].mimic, 0);
-  // k = -0.5 (2 i + 0.1) + 0.3
-  EXPECT_DOUBLE_EQ(m.joints[2].mimic_multiplier, -1);
-  EXPECT_DOUBLE_EQ(m.joints[2].mimic_offset, 0.25);
-  // i starts at its lower limit 0.2
-  EXPECT_DOUBLE_EQ(m.joints[1].start, 0.5);
-  EXPECT_DOUBLE_EQ(m.joints[2].start, 0.05);
-}
-
-TEST(UrdfImport, MimicsThatCannotBeAreDropped) {
-  struct Case {
-    const char *first, *second, *text;
-  };
-  const Case cases[] = {{R"(<mimic joint="nope"/>)", "", "'nope'"},
-                        {R"(<mimic joint="j"/>)", "", "itself"},
-                        {R"(<mimic joint="k"/>)", R"(<mimic joint="j"/>)", "circle"},
-                        {R"(<mimic/>)", "", "names no joint"}};
-  for (const Case& c : cases) {
-    const BodyModel m = import_text(finger(c.first, c.second));
-    ASSERT_EQ(m.joints.size(), 3u);
-    EXPECT_EQ(m.joints[1].mimic, -1) << c.text;
-    EXPECT_EQ(m.joints[2].mimic, -1) << c.text;
-    EXPECT_TRUE(says(m, Severity::error, c.text, 3)) << test::all_problems(m);
-  }
-}
 
 TEST(UrdfImport, MaterialsAreFoundByName) {
   const BodyModel m =

@@ -1,0 +1,114 @@
+// Home and start poses, poses that were asked for, mimics.
+#include "model/urdf_import.h"
+
+#include <string>
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include "import_text.h"
+
+namespace limber {
+namespace {
+
+using test::import_text;
+using test::says;
+using test::try_import;
+
+constexpr double kHalf = kPi / 2;
+
+// an upright arm: hinge about z at 1 m, hinge about -y at 2 m, slide along a slanted axis
+constexpr const char* kArm = R"(<?xml version="1.0"?>
+<robot name="arm">
+  <link name="base"/>
+  <link name="upper"><inertial><mass value="2"/><inertia ixx="1" ixy="0" ixz="0" iyy="1" iyz="0" izz="1"/></inertial></link>
+  <link name="lower"><inertial><mass value="1"/><inertia ixx="1" ixy="0" ixz="0" iyy="1" iyz="0" izz="1"/></inertial></link>
+  <link name="tip"><inertial><mass value="1"/><inertia ixx="1" ixy="0" ixz="0" iyy="1" iyz="0" izz="1"/></inertial></link>
+  <joint name="elbow" type="revolute"><parent link="upper"/><child link="lower"/>
+    <origin xyz="0 0 1" rpy="0 0 1.5707963267948966"/><axis xyz="0 -1 0"/>
+    <limit lower="0.5" upper="2" effort="3" velocity="4"/></joint>
+  <joint name="shoulder" type="revolute"><parent link="base"/><child link="upper"/>
+    <origin xyz="0 0 1"/><axis xyz="0 0 2"/><limit effort="5" velocity="6"/></joint>
+  <joint name="slide" type="prismatic"><parent link="lower"/><child link="tip"/>
+    <origin xyz="1 0 0"/><axis xyz="1 1 0"/><limit lower="-0.1" upper="0.2" effort="7" velocity="8"/>
+    <dynamics damping="0.3" friction="0.4"/></joint>
+</robot>)";
+
+TEST(UrdfPose, HomePoseIsForwardKinematicsAtZero) {
+  const BodyModel m = import_text(kArm);
+  // the elbow's origin turns by 90 degrees about z, so the slide's 1 m along x lies along world y
+  test::expect_near(m.links[1].home.position, {0, 0, 1}, 1e-12);
+  test::expect_near(m.links[2].home.position, {0, 0, 2}, 1e-12);
+  test::expect_near(m.links[3].home.position, {0, 1, 2}, 1e-12);
+  EXPECT_NEAR(test::angle_between(m.links[3].home.rotation, quat_axis({0, 0, 1}, kHalf)), 0, 1e-12);
+}
+
+TEST(UrdfPose, StartsAtTheNearestAllowedAngle) {
+  const BodyModel m = import_text(kArm);
+  // elbow 0 is below 0.5: it starts at 0.5 about -y of its frame, whose x is world y
+  EXPECT_DOUBLE_EQ(m.joints[1].start, 0.5);
+  test::expect_near(m.links[3].start.position, {0, std::cos(0.5), 2 + std::sin(0.5)}, 1e-12);
+  EXPECT_TRUE(says(m, Severity::note, "starts at 0.5", 7)) << test::all_problems(m);
+}
+
+TEST(UrdfPose, AskedPoseIsClampedAndPlaced) {
+  ImportOptions options;
+  options.pose = {{"shoulder", kHalf}, {"slide", 9.0}};
+  const BodyModel m = import_text(kArm, options);
+  EXPECT_DOUBLE_EQ(m.joints[0].start, kHalf);
+  EXPECT_DOUBLE_EQ(m.joints[2].start, 0.2);
+  // shoulder turns y to -x; the slide moves 0.2 m along (1,1,0)/sqrt(2) of the lower link
+  const double s = 0.2 / std::sqrt(2.0);
+  const double along = 1 + s;
+  test::expect_near(m.links[3].start.position, {-along * std::cos(0.5), -s, 2 + along * std::sin(0.5)}, 1e-12);
+}
+
+TEST(UrdfPose, PoseOfAnUnknownJointIsRefusedWithNearName) {
+  ImportOptions options;
+  options.pose = {{"elbov", 1.0}};
+  const auto refused = try_import(kArm, options);
+  ASSERT_FALSE(refused);
+  EXPECT_NE(refused.error().find("elbow"), std::string::npos) << refused.error();
+}
+
+std::string finger(const char* mimic1, const char* mimic2) {
+  return fmt::format(R"(<robot name="r"><link name="a"/><link name="b"/><link name="c"/><link name="d"/>
+<joint name="i" type="revolute"><parent link="a"/><child link="b"/><axis xyz="0 0 1"/><limit lower="0.2" upper="1" effort="1" velocity="1"/></joint>
+<joint name="j" type="revolute"><parent link="b"/><child link="c"/><axis xyz="0 0 1"/><limit lower="-2" upper="2" effort="1" velocity="1"/>{}</joint>
+<joint name="k" type="revolute"><parent link="c"/><child link="d"/><axis xyz="0 0 1"/><limit lower="-2" upper="2" effort="1" velocity="1"/>{}</joint>
+</robot>)",
+                     mimic1, mimic2);
+}
+
+TEST(UrdfPose, MimicChainsAreResolvedToTheirLeader) {
+  const BodyModel m = import_text(finger(R"(<mimic joint="i" multiplier="2" offset="0.1"/>)",
+                                         R"(<mimic joint="j" multiplier="-0.5" offset="0.3"/>)"));
+  EXPECT_EQ(m.joints[1].mimic, 0);
+  EXPECT_EQ(m.joints[2].mimic, 0);
+  // k = -0.5 (2 i + 0.1) + 0.3
+  EXPECT_DOUBLE_EQ(m.joints[2].mimic_multiplier, -1);
+  EXPECT_DOUBLE_EQ(m.joints[2].mimic_offset, 0.25);
+  // i starts at its lower limit 0.2
+  EXPECT_DOUBLE_EQ(m.joints[1].start, 0.5);
+  EXPECT_DOUBLE_EQ(m.joints[2].start, 0.05);
+}
+
+TEST(UrdfPose, MimicsThatCannotBeAreDropped) {
+  struct Case {
+    const char *first, *second, *text;
+  };
+  const Case cases[] = {{R"(<mimic joint="nope"/>)", "", "'nope'"},
+                        {R"(<mimic joint="j"/>)", "", "itself"},
+                        {R"(<mimic joint="k"/>)", R"(<mimic joint="j"/>)", "circle"},
+                        {R"(<mimic/>)", "", "names no joint"}};
+  for (const Case& c : cases) {
+    const BodyModel m = import_text(finger(c.first, c.second));
+    ASSERT_EQ(m.joints.size(), 3u);
+    EXPECT_EQ(m.joints[1].mimic, -1) << c.text;
+    EXPECT_EQ(m.joints[2].mimic, -1) << c.text;
+    EXPECT_TRUE(says(m, Severity::error, c.text, 3)) << test::all_problems(m);
+  }
+}
+
+}  // namespace
+}  // namespace limber
