@@ -2,6 +2,7 @@
 #include "app/describe.h"
 
 #include <cmath>
+#include <functional>
 #include <vector>
 
 #include <fmt/format.h>
@@ -30,19 +31,15 @@ std::string initial_text(const Row& row) {
   return fmt::format("{:g}", fmt::join(row.initial.begin(), row.initial.begin() + row.width, " "));
 }
 
-std::string seed_text(const Table& table, const Row& row) {
-  return table.seed().empty() || row.kind == RowKind::readout ? "" : plain_name(table.seed() + "/" + row.name);
-}
-
 void line(std::string& out, const std::string& path, const Table& table, const Row& row) {
-  out += fmt::format("{}/{}\t{}\t{}\t{}\t{}\t{}\t{}\t{}\n", path, row.name, seed_text(table, row), kind_name(row.kind),
-                     type_name(row.type), row.unit, range_text(row), initial_text(row), row.doc);
+  out += fmt::format("{}/{}\t{}\t{}\t{}\t{}\t{}\t{}\t{}\n", path, row.name, Dispatch::seed_address(table, row),
+                     kind_name(row.kind), type_name(row.type), row.unit, range_text(row), initial_text(row), row.doc);
 }
 
 nlohmann::json as_json(const std::string& path, const Table& table, const Row& row) {
   nlohmann::json j{
       {"path", path + "/" + row.name}, {"kind", kind_name(row.kind)}, {"type", type_name(row.type)}, {"doc", row.doc}};
-  if (const std::string seed = seed_text(table, row); !seed.empty()) j["seed"] = seed;
+  if (const std::string seed = Dispatch::seed_address(table, row); !seed.empty()) j["seed"] = seed;
   if (!row.unit.empty()) j["unit"] = row.unit;
   if (!row.choices.empty()) j["choices"] = row.choices;
   if (std::isfinite(row.min) && row.kind != RowKind::action) j["min"] = row.min;
@@ -58,52 +55,77 @@ std::vector<const Table*> classes() {
           &Motor::table(), &Transport::table(), &CounterNode::table()};
 }
 
-}  // namespace
+// messages that come from no row: the dispatch's, and the one that the network answers by itself
+std::vector<Irregular> messages() {
+  const auto list = Dispatch::irregulars();
+  std::vector<Irregular> all(list.begin(), list.end());
+  all.push_back({"/ping", "", "Answers at once with /pong, the tick and the time."});
+  return all;
+}
 
-std::string describe_classes() {
-  std::string out = kHead;
+using AddRow = std::function<void(const std::string& path, const Table& table, const Row& row)>;
+
+void each_class(const AddRow& add) {
   for (const Table* table : classes()) {
-    for (const Row& row : table->rows()) line(out, table->path(), *table, row);
+    for (const Row& row : table->rows()) add(table->path(), *table, row);
   }
+}
+
+// every thing that a scene has, with its rows
+Result<void> each_thing(const std::string& scene, const AddRow& add) {
+  std::vector<std::string> looked;
+  EngineOptions options;
+  options.scene = find_scene(scene, looked);
+  options.scene_options.data_dir = data_dir();
+  options.print = false;  // stdout is the answer's
+  if (options.scene.empty()) return Error{no_scene(scene, looked)};
+  EngineLink link;
+  Engine engine(link, options);
+  if (Result<void> started = engine.start(); !started) return started;
+  const Store& store = engine.store();
+  store.walk(store.root(), [&](NodeId id) {
+    for (const Row& row : store.table(id).rows()) add(store.path(id), store.table(id), row);
+  });
+  return {};
+}
+
+std::string as_text(const std::function<void(const AddRow&)>& each) {
+  std::string out = kHead;
+  each([&](const std::string& path, const Table& table, const Row& row) { line(out, path, table, row); });
+  for (const Irregular& m : messages()) out += fmt::format("{}\t\tmessage\t{}\t\t\t\t{}\n", m.address, m.takes, m.doc);
   return out;
 }
 
+}  // namespace
+
+std::string describe_classes() { return as_text(each_class); }
+
 int describe_command(const std::string& scene, bool json) {
-  nlohmann::json list = nlohmann::json::array();
-  std::string out = kHead;
-  const auto add = [&](const std::string& path, const Table& table, const Row& row) {
-    if (json) {
-      list.push_back(as_json(path, table, row));
+  Result<void> done;
+  const auto each = [&](const AddRow& add) {
+    if (scene.empty()) {
+      each_class(add);
     } else {
-      line(out, path, table, row);
+      done = each_thing(scene, add);
     }
   };
-  if (scene.empty()) {
-    for (const Table* table : classes()) {
-      for (const Row& row : table->rows()) add(table->path(), *table, row);
-    }
-  } else {
-    std::vector<std::string> looked;
-    EngineOptions options;
-    options.scene = find_scene(scene, looked);
-    options.scene_options.data_dir = data_dir();
-    if (options.scene.empty()) {
-      fmt::print(stderr, "limber: there is no scene '{}'; looked for {}\n", printable(scene),
-                 fmt::join(looked, " and "));
-      return 1;
-    }
-    EngineLink link;
-    Engine engine(link, options);
-    if (const Result<void> started = engine.start(); !started) {
-      fmt::print(stderr, "limber: {}\n", printable(started.error()));
-      return 1;
-    }
-    const Store& store = engine.store();
-    store.walk(store.root(), [&](NodeId id) {
-      for (const Row& row : store.table(id).rows()) add(store.path(id), store.table(id), row);
+  std::string out;
+  if (json) {
+    nlohmann::json list = nlohmann::json::array();
+    each([&](const std::string& path, const Table& table, const Row& row) {
+      list.push_back(as_json(path, table, row));
     });
+    for (const Irregular& m : messages())
+      list.push_back({{"path", m.address}, {"kind", "message"}, {"takes", m.takes}, {"doc", m.doc}});
+    out = list.dump(2) + "\n";
+  } else {
+    out = as_text(each);
   }
-  fmt::print("{}\n", json ? list.dump(2) : out.substr(0, out.size() - 1));
+  if (!done) {
+    fmt::print(stderr, "limber: {}\n", printable(done.error()));
+    return 1;
+  }
+  fmt::print("{}", out);
   return 0;
 }
 

@@ -3,6 +3,8 @@
 
 #include <algorithm>
 #include <array>
+#include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -13,8 +15,10 @@
 #include "app/describe.h"
 #include "app/doctor.h"
 #include "app/inspect.h"
+#include "app/paths.h"
 #include "app/play.h"
 #include "base/build_info.h"
+#include "base/text.h"
 
 namespace limber {
 
@@ -34,15 +38,27 @@ constexpr const char* kExitCodes =
     "Exit codes: 0 fine; 1 the input is at fault; 2 wrong usage; 3 the machine is at fault (a port taken, say).\n"
     "`limber COMMAND --help` tells more of each.";
 
+// seconds that a run may last
+CLI::Validator positive_time() {
+  return CLI::Validator(
+      [](std::string& text) {
+        const std::optional<double> seconds = parse_number(text);
+        return seconds && *seconds > 0 ? std::string() : fmt::format("'{}' is no time in seconds above 0", text);
+      },
+      "", "seconds");
+}
+
 CLI::App* add_play(CLI::App& app, PlayOptions& o) {
   CLI::App* play = app.add_subcommand("play", "play a scene (the default command)");
   play->add_option("scene", o.scene, "the scene's file; left out: scripts/arms.lua")->type_name("SCENE.lua");
   play->add_flag_callback(
       "--headless", [] {}, "without a window (today it always is)");
   play->add_flag("--fast", o.fast, "as fast as it can instead of in real time; no OSC unless asked for");
-  play->add_option("--duration", o.duration, "end at that simulated time")->type_name("S")->check(CLI::PositiveNumber);
+  play->add_option("--duration", o.duration, "end at that simulated time")->type_name("S")->check(positive_time());
   play->add_option("--ticks", o.ticks, "end after so many ticks")->type_name("N");
-  play->add_option("--seed", o.seed, "seed of everything random; wins over sim.seed of the scene")->type_name("N");
+  play->add_option("--seed", o.seed, "seed of everything random; wins over sim.seed of the scene")
+      ->type_name("N")
+      ->check(CLI::Range(std::uint64_t{0}, std::uint64_t{1} << 53));
   play->add_option("--set", o.sets, "set a value after the scene ran; a path or the seed's address")
       ->type_name("PATH=VALUE")
       ->allow_extra_args(false);
@@ -72,6 +88,69 @@ std::vector<std::string> with_command(int argc, char** argv) {
   return args;
 }
 
+// a word that is no scene but nearly a command was meant as one
+std::optional<std::string> mistyped_command(int argc, char** argv) {
+  if (argc < 2 || argv[1][0] == '-') return {};
+  const std::string_view word = argv[1];
+  std::vector<std::string> looked;
+  if (word.ends_with(".lua") || word.find('/') != std::string_view::npos || !find_scene(word, looked).empty())
+    return {};
+  const std::string_view near = nearest_name(word, kCommands);
+  if (near.empty() || near == word) return {};
+  return fmt::format("there is no command '{}'; did you mean '{}'?", printable(word), near);
+}
+
+struct CommandLine {
+  PlayOptions play;
+  BenchOptions bench;
+  std::string robot;  // inspect
+  std::string scene;  // describe
+  bool json = false;
+  std::vector<std::string> package_paths;
+};
+
+void add_inspect(CLI::App& app, CommandLine& line) {
+  CLI::App* inspect =
+      app.add_subcommand("inspect", "what the importer makes of a URDF file, and every problem with line and cure");
+  inspect->add_option("file", line.robot, "the robot")->type_name("FILE.urdf")->required();
+  inspect->add_flag("--json", line.json, "for machines");
+  inspect->add_option("--package-path", line.package_paths, "a folder for package://")
+      ->type_name("DIR")
+      ->allow_extra_args(false);
+}
+
+void add_describe(CLI::App& app, CommandLine& line) {
+  CLI::App* describe =
+      app.add_subcommand("describe", "every address: path, the seed's message, type, unit, range, default, meaning");
+  describe->add_option("scene", line.scene, "with a scene: every address that it has")->type_name("SCENE.lua");
+  describe->add_flag("--json", line.json, "for machines");
+}
+
+void add_bench(CLI::App& app, CommandLine& line) {
+  CLI::App* bench = app.add_subcommand("bench", "how fast it is here; scenes: " + bench_scene_list());
+  bench->add_option("scene", line.bench.scenes, "which ones; left out: all")->type_name("SCENE");
+  bench->add_flag("--compare-raw", line.bench.compare_raw, "beside a bare Bullet loop, interleaved, with the ratio");
+  bench->add_flag("--json", line.bench.json, "for machines");
+  bench->add_option("--ticks", line.bench.ticks, "ticks a round; left out: chosen for each scene")->type_name("N");
+}
+
+// what was wrong, as CLI11 tells it; for an option that there is not, the near one
+std::string usage_text(const CLI::App& app, const CLI::ParseError& error) {
+  const CLI::App* command = app.get_subcommands().empty() ? &app : app.get_subcommands().front();
+  const std::string help = fmt::format("`limber {} --help` tells what there is", command->get_name());
+  for (const std::string& word : app.remaining(true)) {
+    if (!word.starts_with("-")) return fmt::format("'{}' is one argument too many; {}", printable(word), help);
+    const std::string option = word.substr(0, word.find('='));
+    std::vector<std::string> names;
+    for (const CLI::Option* known : command->get_options()) names.push_back(known->get_name());
+    const std::vector<std::string_view> views(names.begin(), names.end());
+    const std::string_view near = nearest_name(option, views);
+    return fmt::format("there is no option '{}'{}; {}", printable(option),
+                       near.empty() ? "" : fmt::format("; did you mean '{}'?", near), help);
+  }
+  return fmt::format("{}; {}", printable(error.what()), help);
+}
+
 }  // namespace
 
 int run_command_line(int argc, char** argv) {
@@ -79,53 +158,32 @@ int run_command_line(int argc, char** argv) {
   app.footer(kExitCodes);
   app.set_version_flag("--version", fmt::format("limber {} ({})", version(), commit()));
   app.require_subcommand(1);
+  CommandLine line;
+  add_play(app, line.play);
+  add_inspect(app, line);
+  add_describe(app, line);
+  add_bench(app, line);
+  app.add_subcommand("doctor", "what works on this machine: ports, buffers, data");
 
-  PlayOptions play_options;
-  CLI::App* play = add_play(app, play_options);
-
-  std::string file;
-  bool json = false;
-  std::vector<std::string> package_paths;
-  CLI::App* inspect =
-      app.add_subcommand("inspect", "what the importer makes of a URDF file, and every problem with line and cure");
-  inspect->add_option("file", file, "the robot")->type_name("FILE.urdf")->required();
-  inspect->add_flag("--json", json, "for machines");
-  inspect->add_option("--package-path", package_paths, "a folder for package://")
-      ->type_name("DIR")
-      ->allow_extra_args(false);
-
-  std::string described;
-  CLI::App* describe =
-      app.add_subcommand("describe", "every address: path, the seed's message, type, unit, range, default, meaning");
-  describe->add_option("scene", described, "with a scene: every address that it has")->type_name("SCENE.lua");
-  describe->add_flag("--json", json, "for machines");
-
-  BenchOptions bench_options;
-  CLI::App* bench = app.add_subcommand("bench", "how fast it is here; scenes: " + bench_scene_list());
-  bench->add_option("scene", bench_options.scenes, "which ones; left out: all")->type_name("SCENE");
-  bench->add_flag("--compare-raw", bench_options.compare_raw, "beside a bare Bullet loop, interleaved, with the ratio");
-  bench->add_flag("--json", bench_options.json, "for machines");
-  bench->add_option("--ticks", bench_options.ticks, "ticks a round; left out: chosen for each scene")->type_name("N");
-
-  CLI::App* doctor = app.add_subcommand("doctor", "what works on this machine: ports, buffers, data");
-
+  if (const auto mistyped = mistyped_command(argc, argv)) {
+    fmt::print(stderr, "limber: {}\n", *mistyped);
+    return kUsage;
+  }
   std::vector<std::string> args = with_command(argc, argv);
   std::reverse(args.begin(), args.end());  // CLI11 takes them from the back
   try {
     app.parse(args);
   } catch (const CLI::ParseError& error) {
-    const bool asked = error.get_exit_code() == 0;
-    if (asked) return app.exit(error);
-    fmt::print(stderr, "limber: {}; `limber {}--help` tells what there is\n", error.what(),
-               app.get_subcommands().empty() ? "" : app.get_subcommands().front()->get_name() + " ");
+    if (error.get_exit_code() == 0) return app.exit(error);  // help, version
+    fmt::print(stderr, "limber: {}\n", usage_text(app, error));
     return kUsage;
   }
-  if (play->parsed()) return play_command(play_options);
-  if (inspect->parsed()) return inspect_command(file, json, package_paths);
-  if (describe->parsed()) return describe_command(described, json);
-  if (bench->parsed()) return bench_command(bench_options);
-  if (doctor->parsed()) return doctor_command();
-  return kUsage;
+  const std::string command = app.get_subcommands().front()->get_name();
+  if (command == "inspect") return inspect_command(line.robot, line.json, line.package_paths);
+  if (command == "describe") return describe_command(line.scene, line.json);
+  if (command == "bench") return bench_command(line.bench);
+  if (command == "doctor") return doctor_command();
+  return play_command(line.play);
 }
 
 }  // namespace limber

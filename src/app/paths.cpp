@@ -3,6 +3,8 @@
 
 #include <filesystem>
 
+#include <fmt/format.h>
+
 #include "base/build_info.h"
 
 namespace limber {
@@ -34,6 +36,11 @@ std::string find_scene(std::string_view name, std::vector<std::string>& looked) 
     looked.push_back(fs::absolute(place, fault).lexically_normal().string());
   }
   return {};
+}
+
+std::string no_scene(std::string_view name, const std::vector<std::string>& looked) {
+  return fmt::format("there is no scene '{}'; looked for {}; a scene is a .lua file, such as scripts/hello.lua", name,
+                     fmt::join(looked, " and "));
 }
 
 }  // namespace limber

@@ -14,4 +14,7 @@ std::string data_dir();
 /// The file as given, else in the data folder; empty when neither is there. `looked` gets every place. [any]
 std::string find_scene(std::string_view name, std::vector<std::string>& looked);
 
+/// What is said when there is none: where it was looked for, and what a scene is.
+std::string no_scene(std::string_view name, const std::vector<std::string>& looked);
+
 }  // namespace limber

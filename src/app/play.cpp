@@ -1,9 +1,11 @@
 // Playing headless: the simulation's thread, the network's thread, signals and the status line on the main one.
 #include "app/play.h"
 
+#include <atomic>
 #include <csignal>
 #include <cstdio>
-#include <future>
+#include <cstdlib>
+#include <semaphore>
 #include <thread>
 
 #include <fmt/format.h>
@@ -36,7 +38,7 @@ Result<Message> parse_set(const std::string& text) {
     return Error{fmt::format("--set '{}': write PATH=VALUE, such as /physics/sim/gravity=0,0,-1.6", text)};
   }
   Message message{text.substr(0, equals), {}};
-  if (message.address.front() != '/') message.address.insert(0, "/");
+  if (message.address.front() != '/') message.address = fmt::format("/{}", message.address);
   std::string values = text.substr(equals + 1);
   for (char& c : values) {
     if (c == ',' || c == '\t') c = ' ';
@@ -98,16 +100,23 @@ Result<EngineOptions> parse_engine(const PlayOptions& options, const std::string
   return engine;
 }
 
-// Ctrl+C and kill reach the main thread only, when it waits for them
+// the signals that end the show, and the one by which its thread calls the main one; they reach only who waits for them
 sigset_t block_signals() {
   sigset_t set;
   sigemptyset(&set);
-  sigaddset(&set, SIGINT);
-  sigaddset(&set, SIGTERM);
-  sigaddset(&set, SIGHUP);
+  for (const int signal : {SIGINT, SIGTERM, SIGHUP, SIGUSR1}) sigaddset(&set, signal);
   pthread_sigmask(SIG_BLOCK, &set, nullptr);
   std::signal(SIGPIPE, SIG_IGN);
   return set;
+}
+
+enum class Heard : std::uint8_t { nothing, call, end };
+
+// waits for a signal, a second at most
+Heard listen(const sigset_t& signals) {
+  const timespec second = {1, 0};
+  const int signal = sigtimedwait(&signals, nullptr, &second);
+  return signal < 0 ? Heard::nothing : signal == SIGUSR1 ? Heard::call : Heard::end;
 }
 
 void print_status(const EngineLink& link) {
@@ -121,90 +130,74 @@ void print_status(const EngineLink& link) {
              link.counters.dropped.load() + link.counters.dropped_kernel.load() > 0 ? "  (some were lost)" : "");
 }
 
-// the engine on its thread: first whether it could start, then how it went
-struct Show {
-  explicit Show(Engine& e) : engine(e), thread([this] { play(); }) {}
+// the engine on its thread; it calls the main thread by SIGUSR1 when the scene has run, and when the show is over
+class Show {
+ public:
+  explicit Show(Engine& engine) : engine_(engine), main_(pthread_self()), thread_([this] { play(); }) {}
   ~Show() {
-    engine.stop();
-    go.set_value_if_unset();
-    thread.join();
+    if (!thread_.joinable()) return;
+    engine_.stop();
+    go_.release();
+    thread_.join();
   }
+  Show(const Show&) = delete;
+  Show& operator=(const Show&) = delete;
 
-  struct Gate {
-    std::promise<void> promise;
-    bool set = false;
-    void set_value_if_unset() {
-      if (!std::exchange(set, true)) promise.set_value();
-    }
-  };
+  bool started() const { return state_.load() >= State::started; }
+  bool over() const { return state_.load() == State::over; }
+  /// What the scene's run gave; once it has started.
+  const Result<void>& result() const { return result_; }
+  /// The first tick may come.
+  void go() { go_.release(); }
+
+ private:
+  enum class State : std::uint8_t { starting, started, over };
 
   void play() {
-    const Result<void> result = engine.start();
-    const bool ok = result.ok();
-    started.set_value(result);
-    if (!ok) return;
-    go.promise.get_future().wait();  // the ports are open before the first tick
-    engine.run();
-    done.set_value();
+    pthread_setname_np(pthread_self(), "limber-sim");
+    result_ = engine_.start();
+    tell(State::started);
+    go_.acquire();
+    if (result_) engine_.run();
+    tell(State::over);
+  }
+  void tell(State state) {
+    state_.store(state);
+    pthread_kill(main_, SIGUSR1);
   }
 
-  Engine& engine;
-  std::promise<Result<void>> started;
-  std::promise<void> done;
-  Gate go;
-  std::thread thread;
+  Engine& engine_;
+  Result<void> result_;
+  std::atomic<State> state_{State::starting};
+  std::counting_semaphore<2> go_{0};
+  pthread_t main_;
+  std::thread thread_;  // last: it starts when all else is there
 };
 
-}  // namespace
+// a thread that does not come back can't be joined: the files are whole, so the process may go
+[[noreturn]] void leave(std::string_view why) {
+  fmt::print(stderr, "limber: {}\n", why);
+  std::fflush(nullptr);
+  std::_Exit(kInput);
+}
 
-int play_command(const PlayOptions& options) {
-  fmt::print(stderr, "limber {} ({}): {}\n", version(), commit(), options.scene);
-  std::vector<std::string> looked;
-  const std::string scene = find_scene(options.scene, looked);
-  if (scene.empty()) {
-    const std::string hint =
-        options.scene.ends_with(".lua") ? "" : "; a scene is a .lua file, `limber --help` lists the commands";
-    return fail(kInput, fmt::format("there is no scene '{}'; looked for {}{}", options.scene,
-                                    fmt::join(looked, " and "), hint));
-  }
-  Result<OscOptions> osc = parse_osc(options);
-  if (!osc) return fail(kUsage, osc.error());
-  Result<EngineOptions> engine_options = parse_engine(options, scene);
-  if (!engine_options) return fail(kUsage, engine_options.error());
-
-  const sigset_t signals = block_signals();
-  EngineLink link;
-  Engine engine(link, std::move(*engine_options));
-  Network network(link, *osc, live_offsets());
-  bool interrupted = false;
-  {
-    Show show(engine);
-    const Result<void> started = show.started.get_future().get();
-    if (!started) return fail(kInput, started.error());
-    if (const Result<void> open = network.start(); !open) return fail(kMachine, open.error());
-    for (const std::string& line : network.lines()) fmt::print(stderr, "limber: {}\n", line);
-    if (!options.fast) fmt::print(stderr, "limber: playing headless; Ctrl+C ends it\n");
-    std::future<void> done = show.done.get_future();
-    show.go.set_value_if_unset();
-    while (done.wait_for(std::chrono::seconds(0)) != std::future_status::ready) {
-      // a second, or a signal; a fast run is looked after more often, since it may end at any time
-      const timespec wait = {options.fast || options.ticks || options.duration ? 0 : 1,
-                             options.fast                        ? 2000000
-                             : options.ticks || options.duration ? 20000000
-                                                                 : 0};
-      if (sigtimedwait(&signals, nullptr, &wait) > 0) {
-        interrupted = true;
-        break;
-      }
-      static auto last = std::chrono::steady_clock::now();
-      if (std::chrono::steady_clock::now() - last < std::chrono::seconds(1) &&
-          (options.fast || options.ticks || options.duration))
-        continue;
-      last = std::chrono::steady_clock::now();
-      print_status(link);
+// until the show is over by itself or somebody ends it; true: somebody did
+bool watch(const Show& show, Engine& engine, const EngineLink& link, const sigset_t& signals) {
+  while (!show.over()) {
+    const Heard heard = listen(signals);
+    if (heard == Heard::nothing) print_status(link);
+    if (heard != Heard::end) continue;
+    engine.stop();
+    for (int i = 0; i < 3 && !show.over(); i++) {
+      if (listen(signals) == Heard::end) break;
     }
+    if (!show.over()) leave("ended in the middle of a tick: a function of the scene does not return");
+    return true;
   }
-  network.stop();
+  return false;
+}
+
+int finish(const PlayOptions& options, Engine& engine, bool interrupted) {
   std::fflush(stdout);
   if (interrupted) fmt::print(stderr, "limber: ended at {:.2f} s\n", engine.world().time());
   if (options.hash) {
@@ -214,6 +207,42 @@ int play_command(const PlayOptions& options) {
   if (options.strict && engine.faults() > 0)
     return fail(kInput, "--strict: there was a script error, a refused value or a health event, see above");
   return kFine;
+}
+
+int play_scene(const PlayOptions& options, EngineOptions engine_options, const OscOptions& osc) {
+  const sigset_t signals = block_signals();
+  EngineLink link;
+  Engine engine(link, std::move(engine_options));
+  Network network(link, osc, live_offsets());
+  bool interrupted = false;
+  {
+    Show show(engine);
+    while (!show.started()) {
+      if (listen(signals) == Heard::end) leave("ended while the scene was being read");
+    }
+    if (!show.result()) return fail(kInput, show.result().error());
+    if (const Result<void> open = network.start(); !open) return fail(kMachine, open.error());
+    for (const std::string& line : network.lines()) fmt::print(stderr, "limber: {}\n", line);
+    if (!options.fast) fmt::print(stderr, "limber: playing headless; Ctrl+C ends it\n");
+    show.go();
+    interrupted = watch(show, engine, link, signals);
+  }
+  network.stop();
+  return finish(options, engine, interrupted);
+}
+
+}  // namespace
+
+int play_command(const PlayOptions& options) {
+  fmt::print(stderr, "limber {} ({}): {}\n", version(), commit(), printable(options.scene));
+  Result<OscOptions> osc = parse_osc(options);
+  if (!osc) return fail(kUsage, osc.error());
+  std::vector<std::string> looked;
+  const std::string scene = find_scene(options.scene, looked);
+  Result<EngineOptions> engine_options = parse_engine(options, scene);
+  if (!engine_options) return fail(kUsage, engine_options.error());
+  if (scene.empty()) return fail(kInput, no_scene(options.scene, looked));
+  return play_scene(options, std::move(*engine_options), *osc);
 }
 
 }  // namespace limber

@@ -25,10 +25,8 @@ void Clock::tick(Time now, double tick_seconds, double speed) {
   if (Seconds(now - due_).count() > 0.25) due_ = now;
   due_ = after(due_, tick_seconds / speed);
 
-  window_seconds_ += tick_seconds;
-  const double real = Seconds(now - window_start_).count();
-  if (real < 0.5) return;
-  reached_ = (window_seconds_ - tick_seconds) / real;
+  const double real = close_window(now, tick_seconds);
+  if (real == 0) return;
   if (reached_ < 0.95 * speed) {
     late_seconds_ += real;
     if (late_seconds_ >= 2 && !std::exchange(said_, true)) late_ = true;
@@ -36,8 +34,23 @@ void Clock::tick(Time now, double tick_seconds, double speed) {
     late_seconds_ = 0;
     said_ = false;
   }
+}
+
+void Clock::measure(Time now, double tick_seconds) {
+  if (!started_) restart(now);
+  due_ = now;
+  (void)close_window(now, tick_seconds);
+}
+
+// the length of the window that ends now, or 0 while it is open
+double Clock::close_window(Time now, double tick_seconds) {
+  window_seconds_ += tick_seconds;
+  const double real = Seconds(now - window_start_).count();
+  if (real < 0.5) return 0;
+  reached_ = (window_seconds_ - tick_seconds) / real;
   window_start_ = now;
   window_seconds_ = tick_seconds;
+  return real;
 }
 
 bool Clock::take_late() { return std::exchange(late_, false); }

@@ -14,6 +14,8 @@ class Clock {
   /// A tick of `tick_seconds` of simulated time begins at real time `now`, at `speed` × real time: the next is due so
   /// much later. More than a quarter of a second behind, what is lost is let go instead of being hurried after.
   void tick(Time now, double tick_seconds, double speed);
+  /// A tick that waited for nothing: only the speed that was reached is measured.
+  void measure(Time now, double tick_seconds);
   /// Forgets the schedule: after a pause the next tick is due at `now`.
   void restart(Time now);
 
@@ -23,6 +25,8 @@ class Clock {
   bool take_late();
 
  private:
+  double close_window(Time now, double tick_seconds);
+
   Time due_{};
   Time window_start_{};
   double window_seconds_ = 0;  // simulated time handed out since window_start_

@@ -95,6 +95,7 @@ void Engine::run() {
   clock_.restart(Clock::Time::clock::now());
   while (!stop_.load(std::memory_order_relaxed) && !finished()) {
     if (options_.fast && !stage_->transport.paused()) {
+      clock_.measure(Clock::Time::clock::now(), stage_->world.timestep());
       pass(true);
     } else if (wait_for_tick()) {
       pace();
@@ -275,6 +276,14 @@ void Engine::plan_osc(const OscPlan& plan) {
   *planned = plan;
   link_.osc_plan.publish(planned);
   link_.wake_network();
+}
+
+void Engine::print(std::string_view text) {
+  if (options_.print) {
+    ScriptHost::print(text);
+  } else {
+    fmt::print(stderr, "{}\n", text);
+  }
 }
 
 void Engine::ask_reset() { stage_->world.ask_reset(); }

@@ -24,6 +24,7 @@ struct EngineOptions {
   std::optional<std::uint64_t> ticks;  ///< Ends after so many; else runs until stop().
   std::optional<double> duration;      ///< Ends at that simulated time, s.
   bool strict = false;                 ///< Ends at the first fault.
+  bool print = true;                   ///< Scripts' print goes to stdout; false: to stderr, where stdout is an answer.
   std::vector<Message> sets;           ///< `--set`: the performer's hand before the first tick.
 };
 
@@ -71,6 +72,7 @@ class Engine : private ScriptHost {
   void plan_osc(const OscPlan& plan) override;
   void ask_reset() override;
   void script_error(std::string_view file, int line, std::string_view text) override;
+  void print(std::string_view text) override;
 
   /// A tick; or, when `may_step` is false, only what happens while time stands still.
   void pass(bool may_step);

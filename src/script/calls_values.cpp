@@ -26,7 +26,7 @@ std::string range_text(const Row& row) {
 
 std::string values_text(std::span<const double> values) {
   std::string text;
-  for (const double v : values) text += (text.empty() ? "" : ", ") + number_text(v);
+  for (const double v : values) text += (text.empty() ? "" : ", ") + (std::isnan(v) ? "nan" : number_text(v));
   return text;
 }
 

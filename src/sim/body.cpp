@@ -92,6 +92,15 @@ Result<Pose> Body::link_pose(std::string_view name) const {
 
 Result<Part*> Body::add_part(std::string name, Shape& shape, double mass, const Pose& pose) {
   if (const Result<void> free = world_.name_is_free(part_group_, "part", name); !free) return Error{free.error()};
+  if (!is_finite(pose.position) || !is_finite(pose.rotation) || glm::dot(pose.rotation, pose.rotation) < 1e-18) {
+    return Error{fmt::format("part '{}/{}' needs a position of three numbers and a rotation that is not zero",
+                             this->name(), name)};
+  }
+  const Row& mass_row = Part::table().at("mass");
+  if (mass != 0 && !(mass >= mass_row.min && mass <= mass_row.max)) {
+    return Error{fmt::format("part '{}/{}' needs a mass of {} .. {} kg, or 0 to never move, not {}", this->name(), name,
+                             mass_row.min, mass_row.max, mass)};
+  }
   if (shape.model().kind == ShapeKind::plane && mass > 0) {
     return Error{
         fmt::format("part '{}/{}' is a plane, which has mass 0 and never moves, not {} kg", this->name(), name, mass)};
@@ -99,7 +108,8 @@ Result<Part*> Body::add_part(std::string name, Shape& shape, double mass, const 
   if (shape.placed().empty()) {
     return Error{fmt::format("compound '{}' is empty; add its children before a part is made of it", shape.name())};
   }
-  auto part = std::make_unique<Part>(*this, part_group_, std::move(name), shape.geometry(), mass, pose);
+  auto part = std::make_unique<Part>(*this, part_group_, std::move(name), shape.geometry(), mass,
+                                     Pose{pose.position, glm::normalize(pose.rotation)});
   part->set_shape(shape.id());
   if (shape.model().kind == ShapeKind::plane) {
     // two parts' values multiply: a plane leaves the other's as they are
@@ -118,6 +128,7 @@ Result<Joint*> Body::add_joint(std::string name, Part& parent, Part& child, Join
   };
   if (&parent == &child) return fault("a part can't hang on itself");
   if (&parent.body() != this || &child.body() != this) return fault("both parts must be of this body");
+  if (!is_finite(position) || !is_finite(axis)) return fault("position and axis must be numbers");
   if (glm::length(axis) < 1e-9) return fault("the axis must not be zero");
   if (parent.is_static() && child.is_static()) return fault("both parts are static; one must have mass");
   // z of the joint's frame is the axis; about it the frame is turned as little as possible from the world's
@@ -138,7 +149,7 @@ Result<Joint*> Body::add_joint(std::string name, Part& parent, Part& child, Join
 
 Result<Motor*> Body::add_motor(Joint& joint) {
   const auto fault = [&](std::string_view what) {
-    return Error{fmt::format("joint '{}/{}' {}", name(), joint.name(), what)};
+    return Error{fmt::format("joint '{}/{}' {}", joint.body().name(), joint.name(), what)};
   };
   if (&joint.body() != this) return fault("belongs to another body");
   if (joint.motor() != nullptr) return fault("has a motor already");
@@ -203,7 +214,10 @@ void Body::build_copy(const Body& source) {
     part.set_start_pose(from->start_pose());
     copy_values(from->id(), part.id(), Part::table());
   }
+  *store().live_block(id_) = *store().live_block(source.id_);  // enabled
   store().apply_marks();
+  // to the bit: what the store tells of a pose has gone through a quaternion
+  for (std::size_t i = 0; i < parts_.size(); i++) parts_[i]->stand_like(*source.parts_[i]);
   for (const auto& from : source.joints_) {
     Part& parent = *find_part(from->parent().name());
     Part& child = *find_part(from->child().name());
@@ -237,15 +251,21 @@ void Body::set_enabled(bool on) {
 void Body::effect_enabled() {
   if (enabled() == in_world_) return;
   in_world_ = enabled();
-  IslandWorld& bullet = world_.bullet();
   if (in_world_) {
-    for (const auto& part : parts_) bullet.addRigidBody(&part->rigid());
-    for (const auto& joint : joints_) bullet.addConstraint(&joint->constraint());
-    moved_ = true;
+    moved_ = true;  // world_ settles it: there it enters too
   } else {
-    for (const auto& joint : joints_) bullet.removeConstraint(&joint->constraint());
-    for (const auto& part : parts_) bullet.removeRigidBody(&part->rigid());
+    for (const auto& joint : joints_) joint->leave();
+    for (const auto& part : parts_) part->leave();
+    entered_parts_ = entered_joints_ = 0;
   }
+}
+
+// Parts enter Bullet's world where they are before the next step, not where they were made: copies of an arm are made
+// in one place, and there each would meet all others.
+void Body::enter() {
+  if (!in_world_) return;
+  for (; entered_parts_ < parts_.size(); entered_parts_++) parts_[entered_parts_]->enter();
+  for (; entered_joints_ < joints_.size(); entered_joints_++) joints_[entered_joints_]->enter();
 }
 
 void Body::reset() {
@@ -254,6 +274,7 @@ void Body::reset() {
     part->set_velocity(Vec3(0), Vec3(0));
     part->clear_forces();
   }
+  for (const auto& joint : joints_) joint->go_to_start();
   restored_once_ = false;
   last_good_.clear();
   set_enabled(true);
@@ -261,6 +282,7 @@ void Body::reset() {
 
 void Body::take_start_pose() {
   for (const auto& part : parts_) part->set_start_pose(part->pose());
+  for (const auto& joint : joints_) joint->take_start();
 }
 
 void Body::settle_joints() {
@@ -295,9 +317,13 @@ std::uint64_t Body::state_hash(std::uint64_t hash) const {
     mix(t.getOrigin().m_floats, 3 * sizeof(btScalar));
     mix(part->rigid().getLinearVelocity().m_floats, 3 * sizeof(btScalar));
     mix(part->rigid().getAngularVelocity().m_floats, 3 * sizeof(btScalar));
+    mix(store().live_block(part->id()), Part::table().live_width() * sizeof(double));
     mix_kept(part->id(), Part::table());
   }
-  for (const auto& joint : joints_) mix_kept(joint->id(), Joint::table());
+  for (const auto& joint : joints_) {
+    mix(store().live_block(joint->id()), Joint::table().live_width() * sizeof(double));
+    mix_kept(joint->id(), Joint::table());
+  }
   for (const auto& motor : motors_) mix_kept(motor->id(), Motor::table());
   return hash;
 }

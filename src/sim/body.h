@@ -61,7 +61,7 @@ class Body {
   Pose pose() const;
   void set_pose(const Pose& pose);
   bool enabled() const;
-  /// Whether Bullet holds it now: what `enabled` said at the last effects.
+  /// Whether it takes part: what `enabled` said at the last effects.
   bool in_world() const { return in_world_; }
   /// Takes the body out of the world, or back in, before the next step: what health does, and `reset` undoes.
   void set_enabled(bool on);
@@ -82,6 +82,7 @@ class Body {
   void build(const std::shared_ptr<const BodyModel>& model, const BuildOptions& options);
   void build_motor(Joint& joint, const JointModel& m, bool servo);
   void build_copy(const Body& source);
+  void enter();
   void settle_joints();
   void effect_enabled();
   void read_position(double* out) const;
@@ -104,6 +105,8 @@ class Body {
   std::vector<std::unique_ptr<Motor>> motors_;
   std::vector<Motor*> followers_;
   bool in_world_ = true;
+  std::size_t entered_parts_ = 0;  // the first so many are in Bullet's world
+  std::size_t entered_joints_ = 0;
   bool moved_ = false;
   bool fresh_ = true;  // made since the last step: where it is then is its start pose
 

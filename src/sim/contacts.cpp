@@ -2,6 +2,7 @@
 #include "sim/contacts.h"
 
 #include <algorithm>
+#include <utility>
 
 #include "sim/part.h"
 
@@ -12,7 +13,8 @@ Part* part_of(const btCollisionObject* object) { return static_cast<Part*>(objec
 }  // namespace
 
 Contacts::Pair& Contacts::pair_of(Part* a, Part* b) {
-  // a handful of pairs at a time: a plain search
+  // Bullet may turn a pair round when it meets again; a handful of pairs at a time: a plain search
+  if (b->id() < a->id()) std::swap(a, b);
   for (Pair& pair : pairs_) {
     if (pair.a == a && pair.b == b) return pair;
   }

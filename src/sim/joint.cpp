@@ -2,6 +2,7 @@
 #include "sim/joint.h"
 
 #include <array>
+#include <utility>
 
 #include "sim/body.h"
 #include "sim/motor.h"
@@ -129,12 +130,19 @@ Joint::Joint(Body& body, NodeId group, std::string name, Part& parent, Part& chi
     store.tell(id_, *limit_rows().lower[half])[axis % 3] = limits_it ? spec.lower : is_free ? 1 : 0;
     store.tell(id_, *limit_rows().upper[half])[axis % 3] = limits_it ? spec.upper : is_free ? -1 : 0;
   }
-  body_.world().bullet().addConstraint(constraint_.get());
 }
 
 Joint::~Joint() {
-  if (body_.in_world()) body_.world().bullet().removeConstraint(constraint_.get());
+  leave();
   body_.store().remove(id_);
+}
+
+void Joint::enter() {
+  if (!std::exchange(in_world_, true)) body_.world().bullet().addConstraint(constraint_.get());
+}
+
+void Joint::leave() {
+  if (std::exchange(in_world_, false)) body_.world().bullet().removeConstraint(constraint_.get());
 }
 
 const std::string& Joint::name() const { return body_.store().name(id_); }
@@ -168,9 +176,15 @@ void Joint::effect_limits() {
 }
 
 void Joint::read_anew() {
-  constraint_->reset(constraint_->angles());
+  // told ones, since the constraint's may be no numbers after a blow-up
+  const double* told = body_.store().live_block(id_) + live_rows().angles->offset;
+  constraint_->reset({told[0], told[1], told[2]});
   tell();
 }
+
+void Joint::take_start() { start_angles_ = constraint_->angles(); }
+
+void Joint::go_to_start() { put(body_.store().live_block(id_) + live_rows().angles->offset, start_angles_); }
 
 void Joint::tell() {
   double* live = body_.store().live_block(id_);

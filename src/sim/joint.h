@@ -61,8 +61,14 @@ class Joint {
 
   /// After Bullet stepped, or poses were set: readouts into the live block.
   void tell();
-  /// After poses were set by hand: reads them anew, turns as near as can be to those before.
+  /// After poses were set by hand: reads them anew, turns as near as can be to those told.
   void read_anew();
+  /// The angles told now, full turns included, are the start's; the next read_anew() comes back to them.
+  void take_start();
+  void go_to_start();
+  /// Into Bullet's world and out of it; the body says when.
+  void enter();
+  void leave();
   /// Limits, ERP and CFM of all axes into the constraint: the effect of their rows.
   void effect_limits();
 
@@ -74,6 +80,8 @@ class Joint {
   JointSpec spec_;
   std::unique_ptr<JointConstraint> constraint_;
   Motor* motor_ = nullptr;
+  Vec3 start_angles_{0};
+  bool in_world_ = false;
 };
 
 }  // namespace limber

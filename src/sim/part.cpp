@@ -95,15 +95,22 @@ Part::Part(Body& body, NodeId group, std::string name, std::shared_ptr<const Geo
   rigid_->setUserPointer(this);
   rigid_->setActivationState(DISABLE_DEACTIVATION);
   set_pose(pose);
-  body_.world().bullet().addRigidBody(rigid_.get());
 }
 
 Part::~Part() {
   World& world = body_.world();
   if (reports_contacts()) world.contact_log().part_reports(false);
   world.contact_log().forget(*this);
-  world.bullet().removeRigidBody(rigid_.get());
+  leave();
   body_.store().remove(id_);
+}
+
+void Part::enter() {
+  if (!rigid_->isInWorld()) body_.world().bullet().addRigidBody(rigid_.get());
+}
+
+void Part::leave() {
+  if (rigid_->isInWorld()) body_.world().bullet().removeRigidBody(rigid_.get());
 }
 
 const std::string& Part::name() const { return body_.store().name(id_); }
@@ -132,6 +139,15 @@ void Part::set_velocity(const Vec3& linear, const Vec3& angular) {
   store.mark(id_, *live_rows().linear_velocity);
 }
 
+void Part::stand_like(const Part& other) {
+  const btRigidBody& from = *other.rigid_;
+  rigid_->setWorldTransform(from.getWorldTransform());
+  rigid_->setInterpolationWorldTransform(from.getWorldTransform());
+  rigid_->setLinearVelocity(from.getLinearVelocity());
+  rigid_->setAngularVelocity(from.getAngularVelocity());
+  rigid_->updateInertiaTensor();
+}
+
 void Part::apply_force_at(const Vec3& force, const Vec3& at) {
   force_ += force;
   torque_ += glm::cross(at - center(), force);
@@ -148,10 +164,13 @@ void Part::push_forces() {
   const Vec3 none(0);
   if (force_ == none && torque_ == none && impulse_ == none && angular_impulse_ == none) return;
   if (is_static_) return clear_forces();
-  rigid_->applyCentralForce(to_bt(force_));
-  rigid_->applyTorque(to_bt(torque_));
-  rigid_->applyCentralImpulse(to_bt(impulse_));
-  rigid_->applyTorqueImpulse(to_bt(angular_impulse_));
+  // more than any part stands, but a number still: what is none would spread to all that the part touches
+  const Vec3 most(1e15);
+  const auto tamed = [&](const Vec3& v) { return to_bt(glm::clamp(v, -most, most)); };
+  rigid_->applyCentralForce(tamed(force_));
+  rigid_->applyTorque(tamed(torque_));
+  rigid_->applyCentralImpulse(tamed(impulse_));
+  rigid_->applyTorqueImpulse(tamed(angular_impulse_));
   clear_forces();
 }
 
@@ -186,7 +205,16 @@ void Part::effect_surface() {
   const Store& store = body_.store();
   rigid_->setFriction(static_cast<btScalar>(store.values(id_, table().at("friction"))[0]));
   rigid_->setRollingFriction(static_cast<btScalar>(store.values(id_, table().at("rolling_friction"))[0]));
-  rigid_->setRestitution(static_cast<btScalar>(store.values(id_, table().at("restitution"))[0]));
+  const auto restitution = static_cast<btScalar>(store.values(id_, table().at("restitution"))[0]);
+  rigid_->setRestitution(restitution);
+  // what bounces must not be braked before it touches: Bullet's contacts ahead would eat a part of the bounce
+  const btScalar ahead = restitution > 0 && !is_static_ ? btScalar(0) : btScalar(BT_LARGE_FLOAT);
+  if (rigid_->getContactProcessingThreshold() == ahead) return;
+  rigid_->setContactProcessingThreshold(ahead);
+  // contacts keep the threshold that they were made with
+  IslandWorld& bullet = body_.world().bullet();
+  if (!rigid_->isInWorld()) return;
+  bullet.getPairCache()->cleanProxyFromPairs(rigid_->getBroadphaseHandle(), bullet.getDispatcher());
 }
 
 void Part::effect_pose() {

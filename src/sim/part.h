@@ -42,6 +42,8 @@ class Part {
   Vec3 angular_velocity() const;
   void set_pose(const Pose& pose);
   void set_velocity(const Vec3& linear, const Vec3& angular);
+  /// Bullet's pose and velocity of another part, to the bit.
+  void stand_like(const Part& other);
   /// Where it was made: reset's goal.
   const Pose& start_pose() const { return start_; }
   void set_start_pose(const Pose& pose) { start_ = pose; }
@@ -53,6 +55,10 @@ class Part {
   void apply_impulse(const Vec3& impulse) { impulse_ += impulse; }
   void apply_impulse_at(const Vec3& impulse, const Vec3& at);
   void clear_forces();
+
+  /// Into Bullet's world and out of it; the body says when.
+  void enter();
+  void leave();
 
   /// Before Bullet steps: hands the collected forces and impulses over.
   void push_forces();

@@ -60,7 +60,7 @@ const Table& World::table() {
   return table;
 }
 
-World::World(Store& store) : store_(store), bullet_(std::make_unique<IslandWorld>()) {
+World::World(Store& store, const WorldSetup& setup) : store_(store), bullet_(std::make_unique<IslandWorld>(setup)) {
   const NodeId physics = store_.add_group(store_.root(), "physics");
   id_ = store_.add(table(), physics, "sim", this);
   body_group_ = store_.add_group(physics, "body");
@@ -170,7 +170,10 @@ Result<void> World::act_reset(std::span<const double>) {
 
 void World::settle() {
   store_.apply_marks();
-  for (const auto& body : bodies_) body->settle_joints();
+  for (const auto& body : bodies_) {
+    body->enter();
+    body->settle_joints();
+  }
 }
 
 void World::step() {
@@ -205,9 +208,13 @@ void World::after_internal_step(btDynamicsWorld* bullet, btScalar) {
     for (const auto& part : body->parts()) {
       const btRigidBody& rigid = part->rigid();
       if (rigid.isStaticObject()) continue;
-      const double speed = rigid.getLinearVelocity().length2();
-      const double spin = rigid.getAngularVelocity().length2();
-      const double distance = rigid.getWorldTransform().getOrigin().length2();
+      const auto squared = [](const btVector3& v) {
+        const Vec3 d = from_bt(v);
+        return glm::dot(d, d);
+      };
+      const double speed = squared(rigid.getLinearVelocity());
+      const double spin = squared(rigid.getAngularVelocity());
+      const double distance = squared(rigid.getWorldTransform().getOrigin());
       if (speed < kMaxSpeed * kMaxSpeed && spin < kMaxSpin * kMaxSpin && distance < kMaxDistance * kMaxDistance)
         continue;
       const bool number = std::isfinite(speed) && std::isfinite(spin) && std::isfinite(distance);
@@ -222,26 +229,27 @@ void World::after_internal_step(btDynamicsWorld* bullet, btScalar) {
 }
 
 void World::heal(Body& body, const Part& part, const char* what) {
-  health_events_++;
   for (std::size_t i = 0; i < body.parts_.size(); i++) {
     Part& each = *body.parts_[i];
     each.set_pose(i < body.last_good_.size() ? body.last_good_[i] : each.start_pose());
     each.set_velocity(Vec3(0), Vec3(0));
+    each.effect_pose();
+    each.effect_velocity();
+    // the force that did it would do it again in this tick's next internal step
+    each.rigid().clearForces();
+    each.rigid().applyGravity();
+    each.rigid().forceActivationState(DISABLE_DEACTIVATION);
   }
-  const bool again = std::exchange(body.restored_once_, true);
-  if (again) {
+  for (const auto& joint : body.joints_) joint->read_anew();
+  if (std::exchange(body.broken_, true)) return;  // said in this tick
+  health_events_++;
+  if (std::exchange(body.restored_once_, true)) {
     body.set_enabled(false);
     log_warning("body '{}': part '{}' {} again; the body is switched off (reset or enabled = true brings it back)",
                 body.name(), part.name(), what);
   } else {
     log_warning("body '{}': part '{}' {}; the body is put back to its last good pose, at rest", body.name(),
                 part.name(), what);
-  }
-  body.broken_ = true;
-  for (const auto& each : body.parts_) {
-    each->effect_pose();
-    each->effect_velocity();
-    each->rigid().forceActivationState(DISABLE_DEACTIVATION);
   }
 }
 

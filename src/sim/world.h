@@ -28,7 +28,7 @@ class World {
  public:
   static const Table& table();
 
-  explicit World(Store& store);
+  explicit World(Store& store, const WorldSetup& setup = {});
   ~World();
   World(const World&) = delete;
   World& operator=(const World&) = delete;

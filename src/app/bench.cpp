@@ -1,0 +1,150 @@
+// The bench's list of scenes, and how figures are printed.
+#include "app/bench.h"
+
+#include <algorithm>
+#include <cstdio>
+#include <fstream>
+#include <thread>
+
+#include <fmt/format.h>
+
+#include "app/bench_arms.h"
+#include "app/bench_osc.h"
+#include "app/bench_spawn.h"
+#include "base/build_info.h"
+#include "base/text.h"
+
+namespace limber {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+// enough ticks that the least of them is undisturbed, few enough for patience
+template <int Arms, int Ticks>
+Json run_arms(const BenchOptions& options) {
+  return bench_arms(bench_arm_scene(Arms), std::min(30, Ticks), options.ticks > 0 ? options.ticks : Ticks,
+                    options.compare_raw);
+}
+
+Json run_arm_quality(const BenchOptions& options) {
+  ArmScene scene = bench_arm_scene(1);
+  scene.step = 1.0 / 60;
+  scene.substeps = 1;
+  return bench_arms(scene, 60, options.ticks > 0 ? options.ticks : 360, options.compare_raw);
+}
+
+std::string cpu_name() {
+  std::ifstream info("/proc/cpuinfo");
+  for (std::string line; std::getline(info, line);) {
+    const std::size_t colon = line.find(": ");
+    if (line.starts_with("model name") && colon != std::string::npos) return printable(line.substr(colon + 2));
+  }
+  return "unknown";
+}
+
+Json machine() {
+  return {{"limber", std::string(version())},
+          {"commit", std::string(commit())},
+          {"cpu", cpu_name()},
+          {"cores", std::thread::hardware_concurrency()}};
+}
+
+std::string words(std::string_view key) {
+  std::string text(key);
+  std::replace(text.begin(), text.end(), '_', ' ');
+  return text;
+}
+
+std::string value_text(const Json& value) {
+  return value.is_string() ? value.get<std::string>()
+                           : (value.is_number() ? number_text(value.get<double>()) : value.dump());
+}
+
+void add_text(const Json& figures, const std::string& before, std::string& out) {
+  for (const auto& [key, value] : figures.items()) {
+    const std::string name = before + words(key);
+    const bool deep =
+        value.is_object() && std::any_of(value.begin(), value.end(), [](const Json& v) { return v.is_structured(); });
+    if (deep) {
+      add_text(value, name + " ", out);
+    } else if (value.is_object()) {
+      out += fmt::format("  {:<30}", name);
+      for (const auto& [each, number] : value.items()) out += fmt::format("  {} {}", words(each), value_text(number));
+      out += '\n';
+    } else {
+      out += fmt::format("  {:<30}  {}\n", name, value_text(value));
+    }
+  }
+}
+
+const BenchScene* find_scene_named(std::string_view name) {
+  const auto found = std::ranges::find_if(bench_scenes(), [&](const BenchScene& s) { return same_name(s.name, name); });
+  return found == bench_scenes().end() ? nullptr : &*found;
+}
+
+}  // namespace
+
+const std::vector<BenchScene>& bench_scenes() {
+  static const std::vector<BenchScene> scenes = {
+      {"arms-1", "one arm of 17 parts, a servo a joint, gravity, floor", &run_arms<1, 1200>},
+      {"arms-16", "16 such arms", &run_arms<16, 240>},
+      {"arms-100", "100 such arms", &run_arms<100, 80>},
+      {"arms-1000", "1000 such arms", &run_arms<1000, 16>},
+      {"arm-quality", "one arm at one internal step of 1/60 s: how far joints part and servos miss", &run_arm_quality},
+      {"spawn", "load urdf/arm17.urdf and make 1000 copies", &bench_spawn},
+      {"osc-in", "messages a second from a socket into rows; a burst of 10 000", &bench_osc_in},
+      {"osc-latency", "from message to answer: /ping, and a value in force", &bench_osc_latency},
+      {"osc-out", "frames of 1000 bodies in three streams", &bench_osc_out},
+  };
+  return scenes;
+}
+
+std::string bench_scene_list() {
+  std::string list;
+  for (const BenchScene& scene : bench_scenes()) list += (list.empty() ? "" : ", ") + std::string(scene.name);
+  return list;
+}
+
+std::string bench_text(const nlohmann::ordered_json& figures) {
+  std::string out;
+  add_text(figures, "", out);
+  return out;
+}
+
+int bench_command(const BenchOptions& options) {
+  std::vector<const BenchScene*> chosen;
+  for (const std::string& name : options.scenes) {
+    chosen.push_back(find_scene_named(name));
+    if (chosen.back() != nullptr) continue;
+    std::vector<std::string_view> names;
+    for (const BenchScene& scene : bench_scenes()) names.push_back(scene.name);
+    fmt::print(stderr, "limber: there is no bench scene '{}'{}\n", printable(name), name_hint(name, names));
+    return 2;
+  }
+  if (chosen.empty()) {
+    for (const BenchScene& scene : bench_scenes()) chosen.push_back(&scene);
+  }
+  Json all = machine();
+  if (!options.json) fmt::print("{}", bench_text(all));
+  all["scenes"] = Json::array();
+  for (const BenchScene* scene : chosen) {
+    if (!options.json) {
+      fmt::print("{}: {}\n", scene->name, scene->doc);
+      std::fflush(stdout);
+    }
+    Json figures = {{"scene", std::string(scene->name)}};
+    figures.update(scene->run(options));
+    if (!options.json) {
+      figures.erase("scene");
+      fmt::print("{}", bench_text(figures));
+      std::fflush(stdout);
+    } else {
+      all["scenes"].push_back(std::move(figures));
+    }
+  }
+  if (options.json) fmt::print("{}\n", all.dump(2));
+  return 0;
+}
+
+}  // namespace limber

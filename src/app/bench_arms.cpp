@@ -1,0 +1,223 @@
+// Arms: building, driving, and the interleaved measurement.
+#include "app/bench_arms.h"
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <memory>
+
+#include <fmt/format.h>
+
+#include "app/bench_times.h"
+#include "base/check.h"
+#include "sim/bullet_phases.h"
+
+namespace limber {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr int kRound = 4;       // ticks of one side before it is the other's turn
+constexpr int kPhaseTicks = 8;  // at most, for the look inside Bullet, which costs a little itself
+
+void set(Store& store, NodeId id, const Table& table, const char* row, std::vector<double> values) {
+  LIMBER_CHECK(store.set(id, table.at(row), values).ok());
+}
+
+// what surrounds physics in a tick, as a part of the tick
+double surroundings(const PhaseTimes& t) {
+  return (t.commands + t.scripts + t.effects + t.readouts + t.snapshot + t.collector) / (t.total() + t.collector);
+}
+
+// one side's samples
+struct Side {
+  Samples ticks;
+  double gap = 0;
+  double error = 0;
+
+  template <class Loop>
+  void play(Loop& loop, double& time, const ArmScene& scene, int count, const std::function<void()>& after = {}) {
+    for (int i = 0; i < count; i++) {
+      loop.drive(time);
+      const double start = bench_seconds();
+      loop.tick();
+      ticks.add(bench_seconds() - start);
+      if (after) after();
+      time += scene.step * scene.substeps;
+    }
+    gap = std::max(gap, loop.joint_gap());
+    error = std::max(error, loop.servo_error(time));
+  }
+  Json figures() const {
+    return {{"tick_us", ticks.microseconds()},
+            {"joint_gap_mm", rounded(gap * 1e3, 0.01)},
+            {"servo_error_rad", rounded(error, 0.001)}};
+  }
+};
+
+// the engine's phases
+struct Phases {
+  Samples commands, scripts, effects, physics, readouts, snapshot, collector, around, snapshot_part;
+
+  void add(const PhaseTimes& t) {
+    commands.add(t.commands);
+    scripts.add(t.scripts);
+    effects.add(t.effects);
+    physics.add(t.physics);
+    readouts.add(t.readouts);
+    snapshot.add(t.snapshot);
+    collector.add(t.collector);
+    around.add(surroundings(t));
+    snapshot_part.add(t.snapshot / (t.total() + t.collector));
+  }
+  Json microseconds() const {
+    const auto median = [](const Samples& s) { return Samples::in_microseconds(s.at(0.5)); };
+    return {{"commands", median(commands)},  {"scripts", median(scripts)},   {"effects", median(effects)},
+            {"physics", median(physics)},    {"readouts", median(readouts)}, {"snapshot", median(snapshot)},
+            {"collector", median(collector)}};
+  }
+};
+
+// what the arms alone take in a bare loop, the world not counted
+double raw_bytes_per_part(const ArmScene& scene) {
+  ArmScene none = scene;
+  none.arms = 0;
+  const double before = heap_bytes();
+  const RawLoop empty(none);
+  const double world = heap_bytes() - before;
+  const RawLoop full(scene);
+  return (heap_bytes() - before - 2 * world) / (scene.arms * (scene.parts + 1));
+}
+
+Json bullet_phases(BenchArms& arms, int ticks) {
+  const BulletPhaseCounter counter;
+  double time = arms.time();
+  for (int i = 0; i < ticks; i++) {
+    arms.drive(time);
+    arms.tick();
+    time = arms.time();
+  }
+  const BulletPhases& p = counter.phases();
+  const auto mean = [&](double seconds) { return Samples::in_microseconds(seconds / ticks); };
+  return {{"broadphase", mean(p.broadphase)},
+          {"narrowphase", mean(p.narrowphase)},
+          {"islands", mean(p.islands)},
+          {"solver", mean(p.solver)},
+          {"motion", mean(p.motion)}};
+}
+
+}  // namespace
+
+ArmScene bench_arm_scene(int arms) {
+  ArmScene scene;
+  scene.arms = arms;
+  return scene;
+}
+
+BenchArms::BenchArms(const ArmScene& scene) : scene_(scene), engine_(link_, EngineOptions{}) {
+  LIMBER_CHECK(engine_.start().ok());
+  World& world = engine_.world();
+  heap_when_empty_ = heap_bytes();
+  set(world.store(), world.id(), World::table(), "timestep", {scene.step * scene.substeps});
+  set(world.store(), world.id(), World::table(), "substeps", {static_cast<double>(scene.substeps)});
+  set(world.store(), world.id(), World::table(), "solver_iterations", {static_cast<double>(scene.solver_iterations)});
+  ShapeModel box;
+  box.size = scene.size;
+  ShapeModel plane;
+  plane.kind = ShapeKind::plane;
+  add_floor(**world.add_shape("plane", plane));
+  Shape& shape = **world.add_shape("box", box);
+  for (int arm = 0; arm < scene.arms; arm++) add_arm(arm, shape);
+}
+
+void BenchArms::add_floor(Shape& plane) {
+  Body& floor = **engine_.world().add_body("floor");
+  LIMBER_CHECK(floor.add_part("plane", plane, 0, Pose{}).ok());
+}
+
+void BenchArms::add_arm(int arm, Shape& box) {
+  Store& store = engine_.store();
+  Body& body = **engine_.world().add_body(fmt::format("arm{}", arm + 1));
+  Part* below = *body.add_part("base", box, 0, {scene_.center(arm, -1), quat_identity()});
+  for (int i = 0; i < scene_.parts; i++) {
+    Part* above =
+        *body.add_part(fmt::format("part{}", i + 1), box, scene_.mass, {scene_.center(arm, i), quat_identity()});
+    const Vec3 place = scene_.center(arm, i) - Vec3(0, 0, scene_.size.z / 2);
+    const Vec3 axis = ArmScene::axis(i) == 0 ? Vec3(1, 0, 0) : Vec3(0, 1, 0);
+    Joint& joint = **body.add_joint(fmt::format("joint{}", i + 1), *below, *above, JointType::revolute, place, axis);
+    set(store, joint.id(), Joint::table(), "angular_lower_limit", {0, 0, -scene_.limit});
+    set(store, joint.id(), Joint::table(), "angular_upper_limit", {0, 0, scene_.limit});
+    const Motor& motor = **body.add_motor(joint);
+    set(store, motor.id(), Motor::table(), "angular_velocity", {0, 0, scene_.speed});
+    set(store, motor.id(), Motor::table(), "max_angular_force", {0, 0, scene_.force});
+    joints_.push_back(&joint);
+    below = above;
+  }
+}
+
+void BenchArms::drive(double time) {
+  for (std::size_t i = 0; i < joints_.size(); i++) {
+    joints_[i]->motor()->set_target(ArmScene::target(static_cast<int>(i) % scene_.parts, time));
+  }
+}
+
+double BenchArms::joint_gap() const {
+  double gap = 0;
+  for (const Joint* joint : joints_) gap = std::max(gap, glm::length(joint->constraint().offsets()));
+  return gap;
+}
+
+double BenchArms::servo_error(double time) const {
+  double error = 0;
+  for (std::size_t i = 0; i < joints_.size(); i++) {
+    const double target = ArmScene::target(static_cast<int>(i) % scene_.parts, time);
+    error = std::max(error, std::abs(joints_[i]->value() - target));
+  }
+  return error;
+}
+
+nlohmann::ordered_json bench_arms(const ArmScene& scene, int warm_ticks, int ticks, bool compare_raw) {
+  const double moving = scene.arms * (scene.parts + 1);
+  Side warm, ours, bare;
+  BenchArms arms(scene);
+  double time = arms.time();
+  warm.play(arms, time, scene, warm_ticks);
+  const double bytes = (heap_bytes() - arms.heap_when_empty()) / moving;
+  std::unique_ptr<RawLoop> raw;
+  double raw_time = 0;
+  if (compare_raw) {
+    raw = std::make_unique<RawLoop>(scene);
+    warm.play(*raw, raw_time, scene, warm_ticks);
+  }
+
+  Phases phases;
+  for (int done = 0; done < ticks; done += kRound) {
+    const int count = std::min(kRound, ticks - done);
+    ours.play(arms, time, scene, count, [&] { phases.add(arms.engine().times()); });
+    if (raw) bare.play(*raw, raw_time, scene, count);
+  }
+
+  Json figures = {{"parts", static_cast<int>(moving)},
+                  {"settings",
+                   {{"timestep_s", scene.step * scene.substeps},
+                    {"substeps", scene.substeps},
+                    {"solver_iterations", scene.solver_iterations}}},
+                  {"ticks", ticks}};
+  figures.update(ours.figures());
+  figures["simulated_seconds_per_second"] = rounded(scene.step * scene.substeps / ours.ticks.at(0.5), 0.01);
+  figures["phases_us"] = phases.microseconds();
+  figures["around_physics_percent"] = rounded(100 * phases.around.at(0.5), 0.01);
+  figures["snapshot_percent"] = rounded(100 * phases.snapshot_part.at(0.5), 0.01);
+  figures["hash"] = fmt::format("{:016x}", arms.engine().state_hash());
+  figures["bullet_us"] = bullet_phases(arms, std::min(ticks, kPhaseTicks));
+  figures["bytes_per_part"] = rounded(bytes, 1);
+  if (!raw) return figures;
+  figures["raw"] = bare.figures();
+  figures["raw"]["bytes_per_part"] = rounded(raw_bytes_per_part(scene), 1);
+  figures["ratio"] = {{"min", rounded(ours.ticks.at(0) / bare.ticks.at(0), 0.001)},
+                      {"median", rounded(ours.ticks.at(0.5) / bare.ticks.at(0.5), 0.001)}};
+  return figures;
+}
+
+}  // namespace limber

@@ -1,0 +1,242 @@
+// OSC scenes: an engine with arms, the program's own receiver and streams, a client of a few lines.
+#include "app/bench_osc.h"
+
+#include <netinet/in.h>
+#include <poll.h>
+#include <sys/socket.h>
+#include <ctime>
+
+#include <array>
+#include <atomic>
+#include <thread>
+
+#include <fmt/format.h>
+
+#include "app/bench_arms.h"
+#include "app/bench_times.h"
+#include "base/random.h"
+#include "engine/snapshot.h"
+#include "osc/batch.h"
+#include "osc/encode.h"
+#include "osc/network.h"
+#include "osc/receiver.h"
+#include "osc/stream_frame.h"
+
+namespace limber {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+using Packet = std::vector<char>;
+
+constexpr int kArms = 16;
+constexpr int kBurst = 10000;
+constexpr int kBundled = 20;  // messages of a bundle
+
+Packet packet_of(const Message& message) {
+  static PacketBuffer buffer;
+  const std::span<const char> bytes = encode_message(message, buffer);
+  return {bytes.begin(), bytes.end()};
+}
+
+// the i-th servo target of a stream of them, to all joints in turn
+Packet target_packet(int i) {
+  const std::string arm = fmt::format("arm{}", i % kArms + 1);
+  const std::string joint = fmt::format("joint{}", i / kArms % 17 + 1);
+  return packet_of({"/physics/motor/angularservoposition", {Arg::of(arm), Arg::of(joint), Arg::of(0.001 * (i % 300))}});
+}
+
+Packet bundle_of(const std::vector<Packet>& messages) {
+  Packet bundle = {'#', 'b', 'u', 'n', 'd', 'l', 'e', 0, 0, 0, 0, 0, 0, 0, 0, 1};
+  for (const Packet& message : messages) {
+    const auto size = static_cast<std::uint32_t>(message.size());
+    for (int shift = 24; shift >= 0; shift -= 8) bundle.push_back(static_cast<char>(size >> shift & 0xff));
+    bundle.insert(bundle.end(), message.begin(), message.end());
+  }
+  return bundle;
+}
+
+// time stands still, so that a tick is commands and a snapshot
+void pause(BenchArms& arms) {
+  arms.link().inbox.push({{{"/transport/pause", {}}}, {}});
+  arms.tick();
+}
+
+// messages a second, the best of some rounds: receiver, then the engine's half
+double messages_per_second(BenchArms& arms, const std::vector<Packet>& packets, int messages) {
+  const NetClock clock;
+  Receiver receiver(arms.link(), {}, {}, clock);
+  double best = 0;
+  for (int round = 0; round < 12; round++) {
+    const double start = bench_seconds();
+    for (const Packet& packet : packets) receiver.take(packet.data(), packet.size(), {0x7f000001, 9});
+    const double received = bench_seconds() - start;
+    arms.tick();
+    best = std::max(best, messages / (received + arms.engine().times().commands));
+  }
+  return rounded(best, 1);
+}
+
+// a socket of a client on this machine
+class Client {
+ public:
+  explicit Client(std::uint16_t port)
+      : socket_(std::move(*open_udp({0x7f000001, 0}))), to_(socket_address({0x7f000001, port})) {}
+
+  void send(const Packet& packet) {
+    (void)sendto(socket_.fd(), packet.data(), packet.size(), 0, reinterpret_cast<const sockaddr*>(&to_), sizeof to_);
+  }
+  // whether something came within a second
+  bool receive() {
+    pollfd waiting{socket_.fd(), POLLIN, 0};
+    std::array<char, 2048> bytes;
+    return poll(&waiting, 1, 1000) > 0 && recv(socket_.fd(), bytes.data(), bytes.size(), MSG_DONTWAIT) > 0;
+  }
+
+ private:
+  Socket socket_;
+  sockaddr_in to_;
+};
+
+OscOptions loopback_only() {
+  OscOptions options;
+  options.in = std::vector<ListenAddress>{{"127.0.0.1", 0}};
+  options.out.emplace();
+  return options;
+}
+
+Json burst(BenchArms& arms, Network& network, const std::vector<Packet>& packets) {
+  Counters& counters = arms.link().counters;
+  const auto arrived = [&] { return counters.received.load(); };
+  const std::uint64_t before = arrived();
+  Client client(network.bound().front().port);
+  const double start = bench_seconds();
+  std::thread sender([&] {
+    for (const Packet& packet : packets) client.send(packet);
+  });
+  // until nothing has come for a while
+  double last = start;
+  for (std::uint64_t seen = before; seen < before + packets.size() && bench_seconds() - last < 0.5;) {
+    arms.tick();
+    if (arrived() == seen) continue;
+    seen = arrived();
+    last = bench_seconds();
+  }
+  sender.join();
+  arms.tick();
+  const auto whole = static_cast<double>(arrived() - before);
+  return {{"sent", packets.size()}, {"arrived", whole}, {"messages_per_second", rounded(whole / (last - start), 1)}};
+}
+
+double thread_seconds() {
+  timespec now{};
+  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
+  return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
+}
+
+}  // namespace
+
+nlohmann::ordered_json bench_osc_in(const BenchOptions&) {
+  BenchArms arms(bench_arm_scene(kArms));
+  pause(arms);
+  std::vector<Packet> single, bundles;
+  for (int i = 0; i < kBurst; i++) single.push_back(target_packet(i));
+  for (int i = 0; i < kBurst; i += kBundled) {
+    bundles.push_back(bundle_of({single.begin() + i, single.begin() + i + kBundled}));
+  }
+  Json figures = {{"messages_per_second", messages_per_second(arms, single, kBurst)},
+                  {"messages_per_second_in_bundles", messages_per_second(arms, bundles, kBurst)}};
+  Network network(arms.link(), loopback_only(), live_offsets());
+  if (const Result<void> started = network.start(); !started) return {{"fault", started.error()}};
+  figures["burst_on_loopback"] = burst(arms, network, single);
+  network.stop();
+  figures["refused"] = arms.link().counters.refused.load() + arms.link().counters.unknown.load();
+  return figures;
+}
+
+nlohmann::ordered_json bench_osc_latency(const BenchOptions&) {
+  constexpr int kPings = 2000;
+  constexpr int kQuestions = 120;
+  BenchArms arms(bench_arm_scene(kArms));
+  Network network(arms.link(), loopback_only(), live_offsets());
+  if (const Result<void> started = network.start(); !started) return {{"fault", started.error()}};
+  Client client(network.bound().front().port);
+  int lost = 0;
+  Samples pings, values;
+  const auto ask = [&](const Packet& packet, Samples& times) {
+    const double start = bench_seconds();
+    client.send(packet);
+    if (client.receive()) {
+      times.add(bench_seconds() - start);
+    } else {
+      lost++;
+    }
+  };
+  const Packet ping = packet_of({"/ping", {}});
+  for (int i = 0; i < kPings; i++) ask(ping, pings);
+
+  std::thread simulation([&] { arms.engine().run(); });
+  Random random(1);
+  const Packet get = packet_of({"/get", {Arg::of("/physics/body/arm1/motor/joint1/target")}});
+  for (int i = 0; i < kQuestions; i++) {
+    // anywhere in a tick
+    std::this_thread::sleep_for(std::chrono::duration<double>(random.uniform() / 60));
+    client.send(target_packet(0));
+    ask(get, values);
+  }
+  arms.engine().stop();
+  simulation.join();
+  network.stop();
+  Json figures = {{"lost", lost}};
+  if (!pings.empty()) figures["ping_us"] = pings.microseconds();
+  if (!values.empty()) figures["value_and_answer_us"] = values.microseconds();
+  figures["tick_us"] = rounded(1e6 / 60, 0.1);
+  return figures;
+}
+
+nlohmann::ordered_json bench_osc_out(const BenchOptions&) {
+  constexpr int kFrames = 200;
+  ArmScene scene = bench_arm_scene(1000);
+  scene.parts = 6;
+  BenchArms arms(scene);
+  arms.tick();
+  const Result<Socket> out = open_udp({0x7f000001, 0});
+  const Result<Socket> in = open_udp({0x7f000001, 0});
+  if (!out || !in) return {{"fault", out ? in.error() : out.error()}};
+
+  // someone who reads, so that the kernel does all its work
+  std::atomic<bool> done{false};
+  std::thread reader([&] {
+    std::vector<char> bytes(65536);
+    while (!done) {
+      pollfd waiting{in->fd(), POLLIN, 0};
+      if (poll(&waiting, 1, 20) <= 0) continue;
+      while (recv(in->fd(), bytes.data(), bytes.size(), MSG_DONTWAIT) > 0) continue;
+    }
+  });
+  StreamTarget wish;
+  StreamFrame frame(live_offsets());
+  const std::shared_ptr<const Snapshot> snapshot = arms.link().snapshots.read();
+  Samples fill, send;
+  bool segmentation = true;
+  for (int i = 0; i < kFrames; i++) {
+    const double start = thread_seconds();
+    frame.lay_out(snapshot->roster, wish);
+    frame.fill(*snapshot);
+    const double filled = thread_seconds();
+    (void)send_batch(out->fd(), in->local(), frame.bytes(), frame.datagram_sizes(), segmentation);
+    fill.add(filled - start);
+    send.add(thread_seconds() - filled);
+  }
+  done = true;
+  reader.join();
+  return {{"bodies", scene.arms},
+          {"joints", scene.arms * scene.parts},
+          {"datagrams", frame.datagram_sizes().size()},
+          {"bytes", frame.bytes().size()},
+          {"fill_us", fill.microseconds()},
+          {"send_us", send.microseconds()},
+          {"percent_of_a_tick_at_60_hz", rounded(100 * 60 * (fill.at(0.5) + send.at(0.5)), 0.01)}};
+}
+
+}  // namespace limber

@@ -1,0 +1,50 @@
+// Time and memory as the bench takes them.
+#pragma once
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <cstddef>
+#include <vector>
+
+#include <malloc.h>
+#include <nlohmann/json.hpp>
+
+namespace limber {
+
+inline double bench_seconds() {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
+}
+
+/// Bytes that the program holds on its heap. [any]
+inline double heap_bytes() {
+  const struct mallinfo2 info = mallinfo2();
+  return static_cast<double>(info.uordblks) + static_cast<double>(info.hblkhd);
+}
+
+/// A figure with as many digits as it deserves.
+inline double rounded(double value, double step) { return std::round(value / step) * step; }
+
+/// Samples of one thing, seconds.
+class Samples {
+ public:
+  void add(double seconds) { all_.push_back(seconds); }
+  bool empty() const { return all_.empty(); }
+  /// 0: the least, 0.5: the median, 0.99: what one in a hundred exceeds.
+  double at(double part) const {
+    std::vector<double> sorted = all_;
+    const auto index = static_cast<std::size_t>(part * static_cast<double>(sorted.size() - 1));
+    std::nth_element(sorted.begin(), sorted.begin() + static_cast<std::ptrdiff_t>(index), sorted.end());
+    return sorted[index];
+  }
+  /// {"min", "median", "p99"} in microseconds.
+  nlohmann::ordered_json microseconds() const {
+    return {{"min", in_microseconds(at(0))}, {"median", in_microseconds(at(0.5))}, {"p99", in_microseconds(at(0.99))}};
+  }
+  static double in_microseconds(double seconds) { return rounded(seconds * 1e6, 0.01); }
+
+ private:
+  std::vector<double> all_;
+};
+
+}  // namespace limber

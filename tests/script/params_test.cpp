@@ -1,0 +1,120 @@
+// params: rows of /scene from a scene's declaration, read, set and clamped.
+#include <gtest/gtest.h>
+
+#include "params/catalog.h"
+#include "stage.h"
+
+namespace limber {
+namespace {
+
+constexpr const char* kParams = R"(
+params {
+  { "wind", 1.5, min = 0, max = 10, unit = "N", doc = "How hard the wind blows." },
+  { "loud", true },
+  { "place", vec3(1, 2, 3), min = vec3(0, 1, 2), max = { 5, 5, 5 }, unit = "m" },
+  { "mood", "calm", choices = { "calm", "wild" } },
+  { "free", -7 },
+}
+)";
+
+TEST(Params, BecomeRowsOfScene) {
+  Stage stage;
+  ASSERT_EQ(stage.run(std::string(kParams) +
+                      "print(params.wind, params.loud, params.place, params.mood, params.free)"),
+            "");
+  EXPECT_EQ(stage.host.printed, std::vector<std::string>{"1.5\ttrue\tvec3(1, 2, 3)\tcalm\t-7"});
+  const NodeId node = stage.store.child(stage.store.root(), "scene");
+  ASSERT_TRUE(stage.store.alive(node));
+  const Row& wind = stage.store.table(node).at("wind");
+  EXPECT_EQ(wind.min, 0);
+  EXPECT_EQ(wind.max, 10);
+  EXPECT_EQ(wind.initial[0], 1.5);
+  EXPECT_EQ(wind.unit, "N");
+  EXPECT_EQ(wind.doc, "How hard the wind blows.");
+  EXPECT_EQ(wind.kind, RowKind::property);
+  EXPECT_EQ(stage.store.table(node).at("mood").choices, (std::vector<std::string>{"calm", "wild"}));
+  EXPECT_EQ(stage.store.table(node).row_names(),
+            (std::vector<std::string_view>{"wind", "loud", "place", "mood", "free"}));
+  const Result<Place> place = find_place(stage.store, "/scene/wind");
+  ASSERT_TRUE(place.ok());
+  EXPECT_EQ(place->row, &wind);
+}
+
+TEST(Params, TheLiveValueIsReadAndSet) {
+  Stage stage;
+  ASSERT_EQ(stage.play(std::string(kParams) + R"(
+sim:on_step(function()
+  print(params.wind, params.place)
+  params.wind = params.wind + 4
+  params.mood = "wild"
+  params.loud = false
+end)
+)"),
+            "");
+  const NodeId node = stage.store.child(stage.store.root(), "scene");
+  const double wind = 3;
+  ASSERT_TRUE(stage.store.set(node, "wind", {&wind, 1}).ok());
+  const double place[] = {9, 0, 4};  // each axis has its own range
+  ASSERT_TRUE(stage.store.set(node, "place", place).ok());
+  stage.world.settle();
+  stage.tick(3);
+  EXPECT_EQ(stage.host.printed, (std::vector<std::string>{"3\tvec3(5, 1, 4)", "7\tvec3(5, 1, 4)", "10\tvec3(5, 1, 4)"}));
+  EXPECT_EQ(stage.store.values(node, stage.store.table(node).at("mood"))[0], 1);
+  EXPECT_EQ(stage.store.values(node, stage.store.table(node).at("loud"))[0], 0);
+  // 7 + 4 and 10 + 4 are outside: said once
+  ASSERT_EQ(stage.logged().size(), 1u);
+  EXPECT_NE(stage.logged()[0].find("params: 'wind' takes 0 .. 10 N; 11 is outside and was clamped"), std::string::npos);
+}
+
+TEST(Params, TheNodeGoesWithTheScene) {
+  Store store;
+  World world(store);
+  RecordingHost host;
+  Stage files;
+  files.write("scripts/scene.lua", kParams);
+  for (int i = 0; i < 3; i++) {
+    Scene scene(world, host, {});
+    ASSERT_TRUE(scene.run((files.folder / "scripts/scene.lua").string()).ok());
+    EXPECT_FALSE(store.child(store.root(), "scene").null());
+  }
+  EXPECT_TRUE(store.child(store.root(), "scene").null());
+}
+
+TEST(Params, Mistakes) {
+  const std::string at = "scripts/scene.lua:1: ";
+  const std::pair<const char*, const char*> cases[] = {
+      {"params { 5 }", "params: entry 1 is a table { \"name\", default, … }, not 5"},
+      {"params { { 'my wind', 0 } }",
+       "params: entry 1 begins with a name of letters, digits and _, not 'my wind'"},
+      {"params { { 'a' } }",
+       "params: 'a' needs a default that is a number, true or false, a vec3, or text with choices, not nothing"},
+      {"params { { 'a', 1, mni = 0 } }", "params: 'a' has no 'mni'; did you mean 'min'?"},
+      {"params { { 'a', 1, min = 2, max = 1 } }", "params: 'a' has a min above its max"},
+      {"params { { 'a', 1, unit = 'furlong' } }", nullptr},
+      {"params { { 'a', 'x' } }", "params: 'a' is text, so it needs choices = { … }"},
+      {"params { { 'a', 'x', choices = { 'y' } } }",
+       "params: 'a': the default 'x' is none of its choices; did you mean 'y'?"},
+      {"params { { 'wind', 1 }, { 'Wi_nd', 2 } }",
+       "params: 'wind' and 'Wi_nd' are the same name (case and underscores don't count)"},
+      {"params { { 'a', 1, rerun = true } }", "params: 'a': this version does not know rerun yet; leave it out"},
+      {"params { { 'a', 0 / 0 } }", nullptr},
+      {"params { { 'a', 1 } } params { { 'b', 1 } }", "params is called once, with all parameters of the scene"},
+      {"params { { 'wind', 1 } } print(params.win)", "params has no 'win'; did you mean 'wind'?"},
+      {"print(params.wind)", "params has no 'wind'; there is none"},
+      {"params { { 'wind', 1 } } params.wind = 2",
+       "setting params.wind acts on the running scene; at the top level use sim:on_start(function() … end)"},
+      {"params(5)", "params takes a list of { \"name\", default, … }, not 5"},
+  };
+  for (const auto& [text, expected] : cases) {
+    if (expected != nullptr) {
+      EXPECT_EQ(error_of(text), at + expected) << text;
+    } else {
+      EXPECT_NE(error_of(text), "no error") << text;
+    }
+  }
+  EXPECT_EQ(callback_error_of("params { { 'wind', 1 } }", "params.wind = true"),
+            "scripts/scene.lua:1: params: 'wind' takes a number, not true");
+}
+
+}  // namespace
+}  // namespace limber

@@ -1,0 +1,371 @@
+// Things: every row of every class through Lua, handles, lists, error texts.
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include "stage.h"
+
+namespace limber {
+namespace {
+
+constexpr const char* kArm = R"(
+local arm = sim:add_body("arm")
+local box = sim:add_box_shape("box", { 0.2, 0.2, 0.5 })
+local base = arm:add_part("base", box, { mass = 0 })
+local link = arm:add_part("link", box, { mass = 2, position = { 0, 0, 0.6 } })
+local tip = arm:add_part("tip", box, { position = vec3(0, 0, 1.2) })
+local j1 = arm:add_joint("joint_1", base, link, { position = { 0, 0, 0.3 }, axis = { 1, 0, 0 } })
+local j2 = arm:add_joint("joint_2", "link", "tip", { type = "prismatic" })
+local m1 = arm:add_motor(j1)
+local m2 = arm:add_motor("joint_2", { max_linear_force = 50 })
+)";
+
+const std::string kLine = "scripts/scene.lua:12: ";  // where the text after kArm stands
+
+std::string arm_error(const std::string& text) { return error_of(std::string(kArm) + "\n" + text); }
+std::string arm_value(const std::string& expression) { return value_of(expression, kArm); }
+
+// a value of the row's type as Lua writes it, within the range; another one for a second try
+std::string sample(const Row& row, int which) {
+  const double low = std::max(row.min, -50.0);
+  const double high = std::min(row.max, 50.0);
+  const auto number = [&](double part) {
+    const double v = low + (high - low) * part;
+    return fmt::format("{}", row.type == RowType::integer ? std::round(v) : v);
+  };
+  const double shift = which == 0 ? 0.1 : 0.3;
+  switch (row.type) {
+    case RowType::vec3:
+      return fmt::format("vec3({}, {}, {})", number(shift), number(shift + 0.1), number(shift + 0.2));
+    case RowType::flags3:
+      return which == 0 ? "{ true, false, true }" : "{ false, true, true }";
+    case RowType::quat:
+      return which == 0 ? "quat(0.6, 0, 0, 0.8)" : "quat(0, 0.8, 0, 0.6)";
+    case RowType::boolean:
+      return which == 0 ? "false" : "true";
+    case RowType::choice:
+      return fmt::format("'{}'", row.choices[static_cast<std::size_t>(which) % row.choices.size()]);
+    default:
+      return number(shift);
+  }
+}
+
+std::string shown(const Row& row, const double* v) {
+  switch (row.type) {
+    case RowType::vec3:
+      return fmt::format("{:.10g} {:.10g} {:.10g}", v[0], v[1], v[2]);
+    case RowType::flags3:
+      return fmt::format("{} {} {}", v[0] != 0, v[1] != 0, v[2] != 0);
+    case RowType::quat:
+      return fmt::format("{:.10g} {:.10g} {:.10g} {:.10g}", v[0], v[1], v[2], v[3]);
+    case RowType::boolean:
+      return v[0] != 0 ? "true" : "false";
+    case RowType::choice:
+      return row.choices[static_cast<std::size_t>(v[0])];
+    default:
+      return fmt::format("{:.10g}", v[0]);
+  }
+}
+
+constexpr const char* kShow = R"(
+local function show(v)
+  if type(v) == "number" then return string.format("%.10g", v) end
+  if type(v) ~= "cdata" then return tostring(v) end
+  if tostring(v):find("^quat") then return string.format("%.10g %.10g %.10g %.10g", v.x, v.y, v.z, v.w) end
+  if tostring(v):find("^vec3") then return string.format("%.10g %.10g %.10g", v.x, v.y, v.z) end
+  return tostring(v[1]) .. " " .. tostring(v[2]) .. " " .. tostring(v[3])
+end
+)";
+
+struct Class {
+  const Table& table;
+  const char* expression;
+};
+
+std::vector<Class> classes() {
+  return {{World::table(), "sim"},  {Body::table(), "arm"},  {Part::table(), "link"},
+          {Joint::table(), "j1"},   {Joint::table(), "j2"},  {Motor::table(), "m1"},
+          {Motor::table(), "m2"}};
+}
+
+NodeId node_of(const Stage& stage, const std::string& expression) {
+  const Body& arm = *stage.world.find_body("arm");
+  if (expression == "sim") return stage.world.id();
+  if (expression == "arm") return arm.id();
+  if (expression == "link") return arm.find_part("link")->id();
+  if (expression == "j1") return arm.find_joint("joint_1")->id();
+  if (expression == "j2") return arm.find_joint("joint_2")->id();
+  return expression == "m1" ? arm.find_motor("joint_1")->id() : arm.find_motor("joint_2")->id();
+}
+
+TEST(Things, EveryWritableRowIsWrittenAndReadBack) {
+  int rows = 0;
+  for (const Class& c : classes()) {
+    for (const Row& row : c.table.rows()) {
+      if (!row.writable()) continue;
+      for (int which = 0; which < 2; which++) {
+        Stage stage;
+        ASSERT_EQ(stage.run(fmt::format("{}{}{}.{} = {}\nprint(show({}.{}))", kArm, kShow, c.expression, row.name,
+                                        sample(row, which), c.expression, row.name)),
+                  "")
+            << row.name;
+        double value[4] = {};
+        stage.store.get(node_of(stage, c.expression), row, value);
+        ASSERT_FALSE(stage.host.printed.empty());
+        EXPECT_EQ(stage.host.printed.back(), shown(row, value)) << c.expression << "." << row.name;
+        // and it is what was asked for: the body's angular velocity reads the root, which is static here
+        if (row.type == RowType::number || row.type == RowType::integer) {
+          EXPECT_NEAR(value[0], std::stod(sample(row, which)), 1e-9) << row.name;
+        }
+        rows++;
+      }
+    }
+  }
+  EXPECT_GT(rows, 150);
+}
+
+TEST(Things, EveryReadoutIsReadAndRefusesToBeSet) {
+  for (const Class& c : classes()) {
+    for (const Row& row : c.table.rows()) {
+      if (row.kind != RowKind::readout) continue;
+      Stage stage;
+      ASSERT_EQ(stage.run(fmt::format("{}{}print(show({}.{}))", kArm, kShow, c.expression, row.name)), "") << row.name;
+      double value[4] = {};
+      stage.store.get(node_of(stage, c.expression), row, value);
+      EXPECT_EQ(stage.host.printed.back(), shown(row, value)) << row.name;
+      const std::string fault = error_of(fmt::format("{}{}.{} = 1", kArm, c.expression, row.name));
+      EXPECT_NE(fault.find(fmt::format("'{}' is a readout: it can be read, not set", row.name)), std::string::npos)
+          << fault;
+    }
+  }
+}
+
+TEST(Things, EveryNumberRefusesNanAndInfinityAndIsClamped) {
+  for (const Class& c : classes()) {
+    for (const Row& row : c.table.rows()) {
+      const bool number = row.type == RowType::number || row.type == RowType::integer || row.type == RowType::vec3;
+      if (!row.writable() || !number) continue;
+      const auto wide = [&](const std::string& v) {
+        return row.type == RowType::vec3 ? fmt::format("vec3({}, {}, {})", v, v, v) : v;
+      };
+      for (const char* bad : {"0 / 0", "1 / 0", "-1 / 0"}) {
+        const std::string fault = error_of(fmt::format("{}{}.{} = {}", kArm, c.expression, row.name, wide(bad)));
+        EXPECT_NE(fault.find(fmt::format("'{}' takes finite numbers, not ", row.name)), std::string::npos) << fault;
+      }
+      Stage stage;
+      const double above = row.max + std::max(1.0, std::abs(row.max) * 0.01);
+      ASSERT_EQ(stage.run(fmt::format("{}for i = 1, 3 do {}.{} = {} end", kArm, c.expression, row.name,
+                                      wide(fmt::format("{:.17g}", above)))),
+                "");
+      double value[4] = {};
+      stage.store.get(node_of(stage, c.expression), row, value);
+      const bool part_of_a_whole = row.name.find("velocity") != std::string::npos && &c.table == &Body::table();
+      if (!part_of_a_whole) {
+        EXPECT_EQ(value[0], row.max) << row.name;
+      }
+      // said once for the line, not three times
+      int said = 0;
+      for (const std::string& text : stage.logged()) {
+        said += text.find(fmt::format("'{}' takes ", row.name)) != std::string::npos &&
+                text.find("outside and was clamped") != std::string::npos;
+      }
+      EXPECT_EQ(said, 1) << row.name;
+    }
+  }
+}
+
+TEST(Things, ClampingIsSaidOncePerLine) {
+  Stage stage;
+  ASSERT_EQ(stage.play(std::string(kArm) + R"(
+sim:on_step(function()
+  link.friction = -1
+  link.friction = 1000
+end)
+)",
+                       50),
+            "");
+  EXPECT_EQ(stage.logged(), (std::vector<std::string>{
+                                "scripts/scene.lua:13: part 'arm/link': 'friction' takes 0 .. 100; -1 is outside and "
+                                "was clamped",
+                                "scripts/scene.lua:14: part 'arm/link': 'friction' takes 0 .. 100; 1000 is outside and "
+                                "was clamped",
+                            }));
+  EXPECT_TRUE(stage.host.faults.empty());
+}
+
+TEST(Things, OneNumberMeansTheOwnAxis) {
+  EXPECT_EQ(value_of("m1.angular_spring_stiffness", std::string(kArm) + "m1.angular_spring_stiffness = 20"),
+            "vec3(0, 0, 20)");
+  EXPECT_EQ(value_of("m2.linear_servo_position", std::string(kArm) + "m2.linear_servo_position = { 1, 2, 3 } "
+                                                                     "m2.linear_servo_position = 0.5"),
+            "vec3(1, 2, 0.5)");
+  EXPECT_EQ(arm_value("m2.max_linear_force"), "vec3(10000, 10000, 50)");
+  EXPECT_EQ(value_of("j1.angular_lower_limit.z", std::string(kArm) + "j1.angular_lower_limit = -1"), "-1");
+  EXPECT_EQ(arm_error("m1.linear_servo_position = 1"),
+            kLine + "motor 'arm/joint_1': one number for 'linear_servo_position' means the own axis, which this joint "
+                    "does not have among these three; give a vec3");
+  EXPECT_EQ(value_of("m1.angular_active", std::string(kArm) + "m1.angular_active = false"), "{ false, false, false }");
+  EXPECT_EQ(value_of("m1.angular_active[2]", std::string(kArm) + "m1.angular_active = { false, true, false }"), "true");
+  EXPECT_EQ(arm_value("#m1.angular_active, m1.angular_active"), "3\t{ false, false, true }");
+}
+
+TEST(Things, MembersBesideTheRows) {
+  EXPECT_EQ(arm_value("arm.name, link.name, j1.name, m1.name, box.name"), "arm\tlink\tjoint_1\tjoint_1\tbox");
+  EXPECT_EQ(arm_value("link.body, link.shape, j1.body, m1.body"), "body 'arm'\tshape 'box'\tbody 'arm'\tbody 'arm'");
+  EXPECT_EQ(arm_value("j1.parent, j1.child, j1.motor, m1.joint"),
+            "part 'arm/base'\tpart 'arm/link'\tmotor 'arm/joint_1'\tjoint 'arm/joint_1'");
+  EXPECT_EQ(arm_value("j1.type, j2.type, arm.root"), "revolute\tprismatic\tpart 'arm/base'");
+  EXPECT_EQ(arm_value("m1.mode, m1.target, m2.mode"), "servo\t0\tservo");
+  EXPECT_EQ(arm_value("arm:link('tip').position, arm:link('tip').name, arm:link('tip').body"),
+            "vec3(0, 0, 1.2)\ttip\tbody 'arm'");
+  EXPECT_EQ(arm_value("sim.alive, arm.alive, arm:link('tip').alive"), "true\ttrue\ttrue");
+  EXPECT_EQ(arm_value("#arm:state_hash(), #sim:state_hash(), arm:state_hash() ~= sim:state_hash()"), "16\t16\ttrue");
+}
+
+TEST(Things, ThingsAreComparedAndAreKeys) {
+  EXPECT_EQ(arm_value("link == arm:part('link'), link == tip, link == nil, j1 == m1, arm == link.body"),
+            "true\tfalse\tfalse\tfalse\ttrue");
+  EXPECT_EQ(arm_value("({ [link] = 'found' })[arm.parts[2]]"), "found");
+}
+
+TEST(Things, ErrorTexts) {
+  const std::pair<const char*, const char*> cases[] = {
+      {"local x = m1.angular_sevro_position",
+       "motor 'arm/joint_1' has no property 'angular_sevro_position'; did you mean 'angular_servo_position'?"},
+      {"m1.sped = 1", "motor 'arm/joint_1' has no property 'sped'; did you mean 'speed'?"},
+      {"link.friction = '1'", "part 'arm/link': 'friction' takes a number, not '1'"},
+      {"link.position = 1", "part 'arm/link': 'position' takes a vec3, not 1"},
+      {"link.position = nil", "part 'arm/link': 'position' takes a vec3, not nothing"},
+      {"link.rotation = vec3()", "part 'arm/link': 'rotation' takes a quat, not vec3(0, 0, 0)"},
+      {"link.report_contacts = 1", "part 'arm/link': 'report_contacts' takes true or false, not 1"},
+      {"m1.mode = 'sevo'", "motor 'arm/joint_1': 'mode' can't be 'sevo'; did you mean 'servo'?"},
+      {"m1.mode = 2", "motor 'arm/joint_1': 'mode' takes one of 'off' 'spin' 'servo' 'spring', not 2"},
+      {"m1.angular_active = 1", "motor 'arm/joint_1': 'angular_active' takes three booleans, or one for all axes, not 1"},
+      {"m1.angular_active[3] = true", "three booleans never change alone; set the whole: { false, false, true }"},
+      {"link.position.z = 2", "a vec3 or quat never changes; set the whole value"},
+      {"link.name = 'x'", "part 'arm/link': 'name' can be read, not set"},
+      {"link.apply_force = 1", "part 'arm/link': 'apply_force' is a method: call it with a colon, it can't be set"},
+      {"link.apply_force(vec3())",
+       "apply_force is a method of a part: write it with a colon, part:apply_force(…), not with a dot"},
+      {"arm.part('tip')", "part is a method of a body: write it with a colon, body:part(…), not with a dot"},
+      {"link:position()", "this is a vec3, no function: members take a dot, only methods a colon"},
+      {"link:mass()", "attempt to call method 'mass' (a number value); members take a dot, only methods a colon"},
+      {"for m in arm.motors() do end", "to walk motors write a colon: for x in thing:motors(…) do"},
+      {"arm:part('tipp')", "body 'arm' has no part 'tipp'; did you mean 'tip'?"},
+      {"arm:motor('joint_3')", "body 'arm' has no motor 'joint_3'; did you mean 'joint_1'?"},
+      {"arm:part(4)", "body 'arm' has 3 parts; there is no 4"},
+      {"arm:part(true)", "a part is wanted by its name or number, not true"},
+      {"sim:body('ar')", "there is no body 'ar'; did you mean 'arm'?"},
+      {"arm:link('hand')", "body 'arm' has no link 'hand'; there are: base, link, tip"},
+      {"sim:add_body('arm')", "there is a body 'arm' already; names are unique"},
+      {"arm:add_part('tip', box)", "there is a part 'tip' already; names are unique"},
+      {"arm:add_part('new', 'bo')", "there is no shape 'bo'; did you mean 'box'?"},
+      {"arm:add_part('new', box, { mas = 1 })", "add_part: opts has no 'mas'; did you mean 'mass'?"},
+      {"arm:add_part('new', box, { mass = -1 })",
+       "add_part: mass must not be negative (0: a part that never moves)"},
+      {"arm:add_joint('j', base, tip, { type = 'rvolute' })",
+       "joint 'arm/j': there is no joint type 'rvolute'; did you mean 'revolute'?"},
+      {"arm:add_joint('j', base, base)", "joint 'arm/j': a part can't hang on itself"},
+      {"arm:add_motor(j1)", "joint 'arm/joint_1' has a motor already"},
+      {"base.mass = 3",
+       "/physics/body/arm/part/base/mass: it was made with mass 0 and never moves; make it with a mass instead"},
+      {"sim:add_sphere_shape('s', -1)", "shape 's': a sphere needs a radius of 0.0001 .. 10000 m, not -1"},
+      {"sim:add_box_shape('s', 3)", "add_box_shape: the size (full edges) takes a vec3, not 3"},
+      {"sim.bodies.arm = 1", "the list of bodies can't be changed by hand"},
+      {"local x = arm.parts.tip",
+       "a list of parts has no member 'tip'; a part is found by body:part(name) or by a number in [ ]"},
+      {"local x = sim.gravty", "sim has no property 'gravty'; did you mean 'gravity'?"},
+  };
+  for (const auto& [text, expected] : cases) EXPECT_EQ(arm_error(text), kLine + expected) << text;
+}
+
+TEST(Things, ActionsWaitForCallbacks) {
+  EXPECT_EQ(arm_error("link:apply_force(vec3(1, 0, 0))"),
+            kLine + "part 'arm/link':apply_force acts on the running scene; at the top level use sim:on_start(function() … end)");
+  for (const char* action : {"arm:reset()", "arm:remove()", "sim:reset()", "osc:send('/a')", "osc:reply('/a')",
+                             "sim:after(1, print):cancel()", "link:apply_impulse({ 0, 0, 1 })"}) {
+    EXPECT_NE(arm_error(action).find("acts on the running scene; at the top level use sim:on_start"),
+              std::string::npos)
+        << action;
+    if (std::string(action).find("reply") == std::string::npos) {
+      EXPECT_EQ(callback_error_of(kArm, action), "no error") << action;
+    }
+  }
+  EXPECT_EQ(callback_error_of(kArm, "link:apply_force(1)"),
+            "scripts/scene.lua:11: part 'arm/link': 'apply_force' takes 3 or 6 numbers (a vec3 is three), not 1");
+  EXPECT_EQ(callback_error_of(kArm, "link:apply_force(vec3(0 / 0))").substr(0, 80),
+            "scripts/scene.lua:11: part 'arm/link': 'apply_force' takes finite numbers, not n");
+  EXPECT_EQ(callback_error_of(kArm, "link:apply_force('up')"),
+            "scripts/scene.lua:11: part 'arm/link': 'apply_force' takes vec3s, not 'up'");
+}
+
+TEST(Things, AGoneThingIsNamed) {
+  EXPECT_EQ(callback_error_of(kArm, "arm:remove() print(link.mass)"),
+            "scripts/scene.lua:11: part 'arm/link' no longer exists (thing.alive tells)");
+  EXPECT_EQ(callback_error_of(kArm, "arm:remove() m1.speed = 1"),
+            "scripts/scene.lua:11: motor 'arm/joint_1' no longer exists (thing.alive tells)");
+  EXPECT_EQ(callback_error_of(kArm, "arm:remove() arm:part(1)"),
+            "scripts/scene.lua:11: body 'arm' no longer exists (thing.alive tells)");
+  Stage stage;
+  // the slots are used again: old handles stay gone, equal only to themselves
+  ASSERT_EQ(stage.play(std::string(kArm) + R"(
+local copy = arm:copy("twin", { position = vec3(3, 0, 0) })
+sim:on_start(function()
+  arm:remove()
+  local again = copy:copy("arm")
+  print(arm.alive, link.alive, again.alive, again == arm, arm == arm, again:part("link") == link, #sim.bodies)
+  print(link, again:part("link"))
+end)
+)"),
+            "");
+  EXPECT_TRUE(stage.host.faults.empty()) << stage.host.faults[0].text;
+  EXPECT_EQ(stage.host.printed, (std::vector<std::string>{"false\tfalse\ttrue\tfalse\ttrue\tfalse\t2",
+                                                          "part 'arm/link'\tpart 'arm/link'"}));
+}
+
+TEST(Things, Lists) {
+  EXPECT_EQ(arm_value("#arm.parts, arm.parts[1], arm.parts[3], arm.parts[4]"),
+            "3\tpart 'arm/base'\tpart 'arm/tip'\tnil");
+  EXPECT_EQ(arm_value("arm:part(2), arm:part(-1), arm:joint(-2), arm:part(tip)"),
+            "part 'arm/link'\tpart 'arm/tip'\tjoint 'arm/joint_1'\tpart 'arm/tip'");
+  EXPECT_EQ(arm_value("sim:find_body('nobody'), sim:find_body('arm'), sim:body(1)"), "nil\tbody 'arm'\tbody 'arm'");
+  const auto walk = [](const std::string& loop) {
+    return value_of("table.concat(seen, ' ')",
+                    std::string(kArm) + "local seen = {} for x, i in " + loop + " do seen[#seen + 1] = x.name .. i end");
+  };
+  EXPECT_EQ(walk("arm:parts()"), "base1 link2 tip3");
+  EXPECT_EQ(walk("arm:parts('all')"), "base1 link2 tip3");
+  EXPECT_EQ(walk("arm:parts('*i*')"), "link1 tip2");
+  EXPECT_EQ(walk("arm:parts('{tip,base}')"), "base1 tip2");
+  EXPECT_EQ(walk("arm:parts({ 'tip', base })"), "base1 tip2");
+  EXPECT_EQ(walk("arm:parts('x*')"), "");
+  EXPECT_EQ(walk("arm:joints(j2)"), "joint_21");
+  EXPECT_EQ(walk("sim:bodies('a*')"), "arm1");
+  EXPECT_EQ(value_of("table.concat(seen, ' ')", std::string(kArm) +
+                                                    "local seen = {} for i, m in ipairs(arm.motors) do seen[i] = "
+                                                    "i .. m.name end"),
+            "1joint_1 2joint_2");
+  EXPECT_EQ(arm_error("for x in arm:parts('tipp') do end"), kLine + "body 'arm' has no part 'tipp'; did you mean 'tip'?");
+}
+
+TEST(Things, AWalkPassesOverWhatGoes) {
+  Stage stage;
+  ASSERT_EQ(stage.play(R"(
+for i = 1, 5 do sim:add_body("b" .. i) end
+sim:on_start(function()
+  local seen = {}
+  for body in sim:bodies() do
+    seen[#seen + 1] = body.name
+    if body.name == "b2" then sim:body("b3"):remove() sim:add_body("b6") end
+  end
+  print(table.concat(seen, " "), #sim.bodies)
+end)
+)"),
+            "");
+  EXPECT_EQ(stage.host.printed, std::vector<std::string>{"b1 b2 b4 b5\t5"});
+}
+
+}  // namespace
+}  // namespace limber

@@ -1,0 +1,267 @@
+// What the rows of motors do on each of the six axes, as numbers measured in the world.
+#include "sim/row_effects.h"
+#include "sim/stage.h"
+
+namespace limber::test {
+
+namespace {
+
+template <class F>
+void on_axes(bool linear, F&& measure) {
+  for (int axis = linear ? 0 : 3; axis < (linear ? 3 : 6); axis++) {
+    OneAxis a(axis);
+    SCOPED_TRACE(axis);
+    measure(a);
+  }
+}
+
+void active(OneAxis& a) {
+  a.of_motor("velocity", 1);
+  a.ticks(30);
+  EXPECT_EQ(a.v(), 0);
+  a.of_motor("active", 1);
+  a.ticks(30);
+  EXPECT_NEAR(a.v(), 1, 1e-4);
+  a.of_motor("active", 0);
+  a.push(0.6);
+  a.ticks(1);
+  EXPECT_NEAR(a.v(), 1 + 0.6 / a.inertia() / 60, 1e-3);
+}
+
+void velocity(OneAxis& a) {
+  a.of_motor("active", 1);
+  for (const double v : {0.7, -1.3, 0.0}) {
+    a.of_motor("velocity", v);
+    a.ticks(30);
+    EXPECT_NEAR(a.v(), v, 1e-4);
+  }
+}
+
+void max_force(OneAxis& a) {
+  a.of_motor("active", 1);
+  a.of_motor("velocity", 100);
+  for (const double force : {0.05, 0.4}) {
+    const double before = a.v();
+    a.of_motor("max_force", force);
+    a.ticks(15);
+    EXPECT_NEAR(a.v() - before, force / a.inertia() / 4, 1e-3);
+    const Vec3 told = a.vec(a.motor.id(), a.axis < 3 ? "applied_force" : "applied_torque");
+    EXPECT_NEAR(told[a.axis % 3], force, 1e-3 * force);
+  }
+}
+
+void servo_active(OneAxis& a) {
+  a.of_motor("active", 1);
+  a.of_motor("velocity", 2);
+  a.of_motor("servo_position", 0.5);
+  a.ticks(60);
+  EXPECT_NEAR(a.v(), 2, 1e-4);  // a spin does not look at the position
+  a.put(0);
+  a.of_motor("servo_active", 1);
+  a.ticks(6);
+  EXPECT_NEAR(a.x(), 0.2, 0.02);  // on its way, at its speed
+  a.ticks(114);
+  EXPECT_NEAR(a.x(), 0.5, 1e-4);
+}
+
+void servo_position(OneAxis& a) {
+  a.of_motor("active", 1);
+  a.of_motor("servo_active", 1);
+  for (const double target : {0.6, -1.2, 0.0}) {
+    a.of_motor("servo_position", target);
+    a.ticks(120);
+    EXPECT_NEAR(a.x(), target, 1e-4);
+    EXPECT_NEAR(a.v(), 0, 1e-3);
+  }
+}
+
+// Half a period from where it is let go, a spring is at the other end: pi·sqrt(inertia/stiffness).
+void spring_active(OneAxis& a) {
+  const double k = a.inertia() * kPi * kPi;  // half a period lasts a second
+  a.of_motor("spring_stiffness", k);
+  a.put(0.2);
+  a.ticks(60);
+  EXPECT_NEAR(a.x(), 0.2, 1e-5);
+  a.of_motor("spring_active", 1);
+  a.ticks(60);
+  EXPECT_NEAR(a.x(), -0.2, 2e-3);
+  a.of_motor("active", 1);  // spring before spin: nothing changes
+  a.of_motor("velocity", 5);
+  a.ticks(60);
+  EXPECT_NEAR(a.x(), 0.2, 4e-3);
+}
+
+void spring_rest(OneAxis& a) {
+  const double k = a.inertia() * 40;
+  a.of_motor("spring_active", 1);
+  a.of_motor("spring_stiffness", k);
+  a.of_motor("spring_damping", 2 * std::sqrt(k * a.inertia()));  // critical
+  for (const double rest : {0.5, -0.3}) {
+    a.of_motor("spring_rest_length", rest);
+    a.ticks(240);
+    EXPECT_NEAR(a.x(), rest, 1e-3);
+  }
+}
+
+// Static sag: load over stiffness.
+void spring_stiffness(OneAxis& a) {
+  a.of_motor("spring_active", 1);
+  for (const double per_inertia : {50.0, 200.0}) {
+    const double k = a.inertia() * per_inertia;
+    a.of_motor("spring_stiffness", k);
+    a.of_motor("spring_damping", 2 * std::sqrt(k * a.inertia()));
+    a.pushed_ticks(240, 0.1 * k);
+    EXPECT_NEAR(a.x(), 0.1, 1e-3);
+    const double told = a.get(a.motor.id(), a.side("spring_stiffness_applied"))[static_cast<std::size_t>(a.axis % 3)];
+    EXPECT_NEAR(told, k, 1e-5 * k);
+  }
+}
+
+// Without stiffness the speed falls by 1/(1 + c·h/inertia) in each internal step (implicit Euler).
+void spring_damping(OneAxis& a) {
+  a.of_motor("spring_active", 1);
+  const double c = 3 * a.inertia();
+  a.of_motor("spring_damping", c);
+  a.kick(1);
+  a.ticks(30);
+  EXPECT_NEAR(a.v(), std::pow(1 / (1 + 3 * a.h()), 120), 1e-3);
+  EXPECT_NEAR(a.get(a.motor.id(), a.side("spring_damping_applied"))[static_cast<std::size_t>(a.axis % 3)], c, 1e-5 * c);
+}
+
+// The same law as a spring's damping, on every axis that is not locked and in any mode.
+void damping() {
+  for (int axis = 0; axis < 6; axis++) {
+    OneAxis a(axis);
+    SCOPED_TRACE(axis);
+    a.set(a.motor.id(), "damping", {3 * a.inertia()});
+    a.kick(1);
+    a.ticks(30);
+    EXPECT_NEAR(a.v(), std::pow(1 / (1 + 3 * a.h()), 120), 1e-3);
+    // beside a spring's own
+    OneAxis both(axis);
+    both.of_motor("spring_active", 1);
+    both.of_motor("spring_damping", both.inertia());
+    both.set(both.motor.id(), "damping", {2 * both.inertia()});
+    both.kick(1);
+    both.ticks(30);
+    EXPECT_NEAR(both.v(), std::pow(1 / (1 + 3 * both.h()), 120), 2e-3);
+    // a spin against it falls behind where its force ends: v = force/damping
+    OneAxis spin(axis);
+    spin.of_motor("active", 1);
+    spin.of_motor("velocity", 100);
+    spin.of_motor("max_force", 6 * spin.inertia());
+    spin.set(spin.motor.id(), "damping", {3 * spin.inertia()});
+    spin.ticks(300);
+    EXPECT_NEAR(spin.v(), 2, 0.01);
+  }
+}
+
+void bounce() {
+  for (int axis = 0; axis < 6; axis++) {
+    for (const double e : {0.0, 0.4, 1.0}) {
+      for (const double way : {1.0, -1.0}) {
+        OneAxis a(axis);
+        a.limits(-0.1, 0.1);
+        a.set(a.motor.id(), "bounce", {e});
+        a.kick(way);
+        a.ticks(9);
+        EXPECT_NEAR(a.v(), -e * way, 0.02) << axis << " " << e;
+      }
+    }
+  }
+}
+
+// The own axis of a revolute and of a prismatic joint.
+struct Own : Stage {
+  explicit Own(JointType type) : joint(*robot.add_joint("joint", base, child, type, Vec3(0), {0, 0, 1}).value()) {}
+  double x() const { return joint.value(); }
+  double v() const { return number(joint.id(), "speed"); }
+  Body& robot = body("robot");
+  Part& base = part(robot, sphere_model(0.05), 0);
+  Part& child = part(robot, box_model({0.2, 0.3, 0.4}), 1);
+  Joint& joint;
+  Motor& motor = *robot.add_motor(joint).value();
+};
+
+void mode() {
+  for (const JointType type : {JointType::revolute, JointType::prismatic}) {
+    Own o(type);
+    EXPECT_EQ(o.number(o.motor.id(), "mode"), 2);  // made as a servo that holds
+    o.set(o.motor.id(), "target", {0.4});
+    o.ticks(60);
+    EXPECT_NEAR(o.x(), 0.4, 1e-4);
+    o.set(o.motor.id(), "speed", {3});
+    o.set(o.motor.id(), "mode", {1});
+    o.ticks(30);
+    EXPECT_NEAR(o.v(), 3, 1e-3);
+    o.set(o.motor.id(), "mode", {0});
+    o.set(o.motor.id(), "speed", {-3});
+    o.ticks(30);
+    EXPECT_NEAR(o.v(), 3, 1e-3);  // off: it goes on
+    const char* stiffness = type == JointType::revolute ? "angular_spring_stiffness" : "linear_spring_stiffness";
+    o.set_one(o.motor.id(), stiffness, 2, 0.5);
+    const double before = o.x();
+    o.set(o.motor.id(), "target", {before});
+    o.set(o.motor.id(), "mode", {3});
+    o.ticks(1);
+    EXPECT_LT(o.v(), 3);  // the spring pulls back
+    for (const double m : {0., 1., 2., 3.}) {
+      o.set(o.motor.id(), "mode", {m});
+      EXPECT_EQ(o.number(o.motor.id(), "mode"), m);
+    }
+  }
+}
+
+void target() {
+  for (const JointType type : {JointType::revolute, JointType::prismatic}) {
+    const std::string side = type == JointType::revolute ? "angular_" : "linear_";
+    Own o(type);
+    o.set(o.motor.id(), "target", {0.7});
+    EXPECT_EQ(o.get(o.motor.id(), side + "servo_position")[2], 0.7);
+    EXPECT_EQ(o.get(o.motor.id(), side + "spring_rest_length")[2], 0.7);
+    o.ticks(60);
+    EXPECT_NEAR(o.x(), 0.7, 1e-4);
+  }
+}
+
+void speed() {
+  for (const JointType type : {JointType::revolute, JointType::prismatic}) {
+    Own o(type);
+    o.set(o.motor.id(), "speed", {0.5});
+    o.set(o.motor.id(), "target", {2});
+    o.ticks(60);
+    EXPECT_NEAR(o.x(), 0.5, 0.01);  // as fast as it may: half a radian a second
+    EXPECT_NEAR(o.v(), 0.5, 1e-3);
+    o.set(o.motor.id(), "mode", {1});
+    o.set(o.motor.id(), "speed", {-2});
+    o.ticks(30);
+    EXPECT_NEAR(o.v(), -2, 1e-3);
+  }
+}
+
+}  // namespace
+
+void add_motor_effects(RowEffects& effects) {
+  for (const bool linear : {true, false}) {
+    const std::string side = linear ? "linear_" : "angular_";
+    const auto add = [&](const std::string& row, void (*measure)(OneAxis&)) {
+      effects[{"Motor", row}] = [=] { on_axes(linear, measure); };
+    };
+    add(side + "active", active);
+    add(side + "velocity", velocity);
+    add("max_" + side + "force", max_force);
+    add(side + "servo_active", servo_active);
+    add(side + "servo_position", servo_position);
+    add(side + "spring_active", spring_active);
+    add(side + "spring_rest_length", spring_rest);
+    add(side + "spring_stiffness", spring_stiffness);
+    add(side + "spring_damping", spring_damping);
+  }
+  effects[{"Motor", "mode"}] = mode;
+  effects[{"Motor", "target"}] = target;
+  effects[{"Motor", "speed"}] = speed;
+  effects[{"Motor", "bounce"}] = bounce;
+  effects[{"Motor", "damping"}] = damping;
+}
+
+}  // namespace limber::test

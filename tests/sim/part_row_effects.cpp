@@ -1,0 +1,188 @@
+// What the rows of parts do, as numbers measured in the world.
+#include "sim/row_effects.h"
+#include "sim/stage.h"
+
+namespace limber::test {
+
+namespace {
+
+constexpr double kG = 9.81;
+
+void mass() {
+  const Vec3 size(0.2, 0.4, 0.6);
+  for (const double m : {0.5, 1.0, 20.0}) {
+    Stage s;
+    Part& part = s.lone(box_model(size), 1);
+    s.set(part.id(), "mass", {m});
+    for (int i = 0; i < 30; i++) {
+      part.apply_force({3, 0, 0});
+      part.apply_torque({0, 0.01, 0});
+      s.ticks(1);
+    }
+    EXPECT_NEAR(part.linear_velocity().x, 3 / m * 0.5, 1e-5) << m;
+    // the inertia scales with it
+    EXPECT_NEAR(part.angular_velocity().y, 0.01 / box_inertia(m, size).y * 0.5, 1e-5) << m;
+  }
+}
+
+void linear_damping() {
+  for (const double d : {0.0, 0.3, 0.9}) {
+    Stage s;
+    Part& part = s.lone(sphere_model(0.1), 1);
+    s.set(part.id(), "linear_damping", {d});
+    s.set(part.id(), "linear_velocity", {4, 0, 0});
+    s.ticks(120);
+    EXPECT_NEAR(part.linear_velocity().x, 4 * std::pow(1 - d, 2), 2e-4) << d;
+  }
+}
+
+void angular_damping() {
+  for (const double d : {0.0, 0.3, 0.9}) {
+    Stage s;
+    Part& part = s.lone(sphere_model(0.1), 1);
+    s.set(part.id(), "angular_damping", {d});
+    s.set(part.id(), "angular_velocity", {0, 4, 0});
+    s.ticks(120);
+    EXPECT_NEAR(part.angular_velocity().y, 4 * std::pow(1 - d, 2), 2e-4) << d;
+  }
+}
+
+// A flat box on a floor, gravity tilted instead of the floor: it slides with g·(sin - mu·cos), or not at all.
+void friction() {
+  const double slope = 0.4;
+  for (const double mu : {0.0, 0.1, 0.3, 0.41, 0.44, 2.0}) {
+    Stage s;
+    s.floor();
+    Part& box = s.lone(box_model({0.4, 0.4, 0.1}), 1, {{0, 0, 0.05}, quat_identity()});
+    s.set(box.id(), "friction", {mu});
+    s.gravity({kG * std::sin(slope), 0, -kG * std::cos(slope)});
+    s.ticks(30);
+    const double before = box.linear_velocity().x;
+    s.ticks(60);
+    const double expected = std::max(0.0, kG * (std::sin(slope) - mu * std::cos(slope)));
+    EXPECT_NEAR(box.linear_velocity().x - before, expected, 0.01 * kG * std::sin(slope)) << mu;  // tan 0.4 = 0.4228
+  }
+}
+
+// A ball that rolls on a floor: torque mu·m·g against it and I = 2/5·m·r² slow it by mu·g/(1.4·r).
+void rolling_friction() {
+  const double r = 0.2;
+  for (const double mu : {0.0, 0.005, 0.02}) {
+    Stage s;
+    s.floor();
+    s.gravity({0, 0, -kG});
+    Part& ball = s.lone(sphere_model(r), 1, {{0, 0, r}, quat_identity()});
+    s.set(ball.id(), "rolling_friction", {mu});
+    s.set(ball.id(), "linear_velocity", {2, 0, 0});
+    s.set(ball.id(), "angular_velocity", {0, 2 / r, 0});
+    s.ticks(30);
+    const double before = ball.linear_velocity().x;
+    s.ticks(60);
+    EXPECT_NEAR(before - ball.linear_velocity().x, mu * kG / (1.4 * r), 0.01) << mu;
+  }
+}
+
+double height_after_bounce(double restitution, double drop) {
+  Stage s;
+  s.floor();
+  s.substeps(16);
+  s.gravity({0, 0, -kG});
+  Part& ball = s.lone(sphere_model(0.1), 1, {{0, 0, 0.1 + drop}, quat_identity()});
+  s.set(ball.id(), "restitution", {restitution});
+  double highest = 0;
+  bool rising = false;
+  for (int i = 0; i < 150; i++) {
+    s.ticks(1);
+    if (!rising && ball.linear_velocity().z > 0) rising = true;
+    if (rising) highest = std::max(highest, ball.pose().position.z - 0.1);
+    if (rising && ball.linear_velocity().z < 0) break;
+  }
+  return highest;
+}
+
+void restitution() {
+  for (const double e : {0.3, 0.5, 0.8}) EXPECT_NEAR(height_after_bounce(e, 2), e * e * 2, 0.03 * e * e * 2) << e;
+  EXPECT_LT(height_after_bounce(0, 2), 0.002);
+}
+
+void report_contacts() {
+  for (const bool on : {false, true}) {
+    Stage s;
+    s.floor();
+    s.gravity({0, 0, -kG});
+    Part& ball = s.lone(sphere_model(0.1), 1, {{0, 0, 0.3}, quat_identity()});
+    s.set(ball.id(), "report_contacts", {on ? 1. : 0.});
+    std::size_t events = 0;
+    for (int i = 0; i < 60; i++) {
+      s.ticks(1);
+      events += s.world.contacts().size();
+    }
+    EXPECT_EQ(events, on ? 1u : 0u);
+  }
+}
+
+void position() {
+  Stage s;
+  Part& part = s.lone(sphere_model(0.1), 1);
+  s.set(part.id(), "linear_velocity", {1, 0, 0});
+  s.ticks(6);
+  s.set(part.id(), "position", {5, -6, 7});
+  s.ticks(6);
+  EXPECT_NEAR(part.pose().position.x, 5.1, 1e-5);
+  EXPECT_NEAR(part.pose().position.y, -6, 1e-5);
+  EXPECT_NEAR(part.pose().position.z, 7, 1e-5);
+}
+
+// A turned box answers a torque about a world axis with the inertia that now lies there.
+void rotation() {
+  const Vec3 size(0.1, 0.4, 0.8);
+  Stage s;
+  Part& part = s.lone(box_model(size), 2);
+  const double half = std::sqrt(0.5);
+  s.set(part.id(), "rotation", {0, half, 0, half});  // +90 degrees about y: the box's x points to -z
+  part.apply_torque({0, 0, 0.06});
+  s.ticks(1);
+  EXPECT_NEAR(part.angular_velocity().z, 0.06 / box_inertia(2, size).x / 60, 1e-6);
+  EXPECT_NEAR(part.pose().rotation.y, half, 1e-3);
+}
+
+void linear_velocity() {
+  Stage s;
+  Part& part = s.lone(sphere_model(0.1), 1);
+  s.set(part.id(), "linear_velocity", {1, -2, 3});
+  s.ticks(60);
+  for (int i = 0; i < 3; i++) EXPECT_NEAR(part.pose().position[i], Vec3(1, -2, 3)[i], 1e-5);
+}
+
+void angular_velocity() {
+  for (int axis = 0; axis < 3; axis++) {
+    Stage s;
+    Part& part = s.lone(box_model(Vec3(0.2)), 1);
+    Vec3 omega(0);
+    omega[axis] = 0.8;
+    s.set(part.id(), "angular_velocity", {omega.x, omega.y, omega.z});
+    s.ticks(60);
+    const Quat expected = quat_axis(omega / 0.8, 0.8);
+    for (const Vec3& v : {Vec3(1, 0, 0), Vec3(0, 1, 0), Vec3(0, 0, 1)}) {
+      EXPECT_LT(glm::length(part.pose().rotation * v - expected * v), 1e-4) << axis;
+    }
+  }
+}
+
+}  // namespace
+
+void add_part_effects(RowEffects& effects) {
+  effects[{"Part", "mass"}] = mass;
+  effects[{"Part", "linear_damping"}] = linear_damping;
+  effects[{"Part", "angular_damping"}] = angular_damping;
+  effects[{"Part", "friction"}] = friction;
+  effects[{"Part", "rolling_friction"}] = rolling_friction;
+  effects[{"Part", "restitution"}] = restitution;
+  effects[{"Part", "report_contacts"}] = report_contacts;
+  effects[{"Part", "position"}] = position;
+  effects[{"Part", "rotation"}] = rotation;
+  effects[{"Part", "linear_velocity"}] = linear_velocity;
+  effects[{"Part", "angular_velocity"}] = angular_velocity;
+}
+
+}  // namespace limber::test

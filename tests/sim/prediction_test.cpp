@@ -1,0 +1,270 @@
+// Motion against closed formulas: tensors, pendulum, springs, servos, limits, momentum, mirrors.
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "sim/arm.h"
+#include "sim/stage.h"
+
+namespace limber {
+namespace {
+
+using namespace test;
+
+// A link with a full tensor, its centre away from the link's origin.
+std::shared_ptr<const BodyModel> model_with_tensor(const Mat3& tensor, double mass, const Vec3& center) {
+  auto model = std::make_shared<BodyModel>();
+  LinkModel link;
+  link.name = "link";
+  link.inertial = {mass, center, tensor};
+  PlacedShape ball;
+  ball.shape = sphere_model(0.05);
+  link.collisions = {ball};
+  model->links = {link};
+  return model;
+}
+
+TEST(Prediction, ATensorAnswersTorqueAboutEachAxis) {
+  // symmetric, positive, the triangle inequality of its moments holds
+  const Mat3 tensor(Vec3(0.5, 0.08, -0.05), Vec3(0.08, 0.6, 0.1), Vec3(-0.05, 0.1, 0.4));
+  for (int axis = 0; axis < 3; axis++) {
+    Stage s;
+    Body& body = **s.world.add_body(model_with_tensor(tensor, 2, {0.1, -0.2, 0.3}), "thing", {});
+    Part& part = *body.root();
+    const Quat turn = quat_axis(normalized({1, -2, 0.5}), 0.9);
+    part.set_pose({{1, 2, 3}, turn});
+    Vec3 torque(0);
+    torque[axis] = 0.01;
+    part.apply_torque(torque);
+    s.ticks(1);
+    const Vec3 in_link = glm::inverse(tensor) * (glm::conjugate(turn) * torque);
+    const Vec3 expected = turn * in_link / 60.0;
+    for (int i = 0; i < 3; i++) EXPECT_NEAR(part.angular_velocity()[i], expected[i], 2e-5 * glm::length(expected));
+    // the centre stays where it was, and the link's origin is placed from it
+    const Vec3 center = Vec3(1, 2, 3) + turn * Vec3(0.1, -0.2, 0.3);
+    EXPECT_LT(glm::length(part.center() - center), 1e-6);
+  }
+}
+
+TEST(Prediction, AForceAtAPointTurnsByItsArm) {
+  Stage s;
+  Part& box = s.lone(box_model({0.4, 0.6, 0.2}), 3, {{1, 1, 1}, quat_identity()});
+  const Vec3 arm(0.2, 0.1, -0.1);
+  const Vec3 force(0.5, -0.3, 0.4);
+  box.apply_force_at(force, Vec3(1, 1, 1) + arm);
+  s.ticks(1);
+  const Vec3 spin = glm::cross(arm, force) / box_inertia(3, {0.4, 0.6, 0.2}) / 60.0;
+  EXPECT_LT(glm::length(box.angular_velocity() - spin), 1e-3 * glm::length(spin));
+  EXPECT_LT(glm::length(box.linear_velocity() - force / 180.0), 1e-7);
+  // a force ends with its tick; an impulse is there at once
+  s.ticks(10);
+  EXPECT_LT(glm::length(box.linear_velocity() - force / 180.0), 1e-7);
+  box.apply_impulse_at({0.6, 0, 0}, box.center());
+  s.ticks(1);
+  EXPECT_LT(glm::length(box.linear_velocity() - force / 180.0 - Vec3(0.2, 0, 0)), 1e-6);
+}
+
+// Free of torque, an uneven box tumbles but keeps its angular momentum.
+TEST(Prediction, ATumblingBoxKeepsItsAngularMomentum) {
+  const Vec3 size(0.1, 0.3, 0.5);
+  Stage s;
+  s.substeps(16);
+  Part& box = s.lone(box_model(size), 2);
+  s.set(box.id(), "angular_velocity", {0.3, 3, 0.3});  // about the middle axis: unstable
+  const auto momentum = [&] {
+    const Quat q = box.pose().rotation;
+    return q * (box_inertia(2, size) * (glm::conjugate(q) * box.angular_velocity()));
+  };
+  const Vec3 before = momentum();
+  double least = 3;
+  for (int i = 0; i < 180; i++) {
+    s.ticks(1);
+    least = std::min(least, (glm::conjugate(box.pose().rotation) * box.angular_velocity()).y);
+  }
+  EXPECT_LT(least, -2);  // it did turn over
+  EXPECT_LT(glm::length(momentum() - before), 0.02 * glm::length(before));
+}
+
+// A box on a hinge through a point above it.
+struct Pendulum : Stage {
+  static constexpr double kLength = 0.8, kMass = 1.5;
+  static constexpr Vec3 kBox{0.1, 0.2, 0.3};
+  Body& robot = body("robot");
+  Part& base = part(robot, sphere_model(0.05), 0, {{0, 0, 1}, quat_identity()});
+  Part& bob = part(robot, box_model(kBox), kMass, {{0, 0, 1 - kLength}, quat_identity()});
+  Joint& hinge = *robot.add_joint("hinge", base, bob, JointType::revolute, {0, 0, 1}, {0, 1, 0}).value();
+  double inertia = kMass * kLength * kLength + box_inertia(kMass, kBox).y;
+
+  void swing_out(double angle) {
+    const Pose pivot{{0, 0, 1}, quat_axis({0, 1, 0}, angle)};
+    bob.set_pose(pivot * Pose{{0, 0, -kLength}, quat_identity()});
+  }
+  /// Mean period over some swings, from interpolated crossings of zero upwards.
+  double period(int swings, double about = 0) {
+    double last = hinge.value() - about;
+    double first_crossing = -1;
+    for (int tick = 1; tick < 20000; tick++) {
+      ticks(1);
+      const double now = hinge.value() - about;
+      if (last < 0 && now >= 0) {
+        const double at = world.time() - now / (now - last) / 60;
+        if (first_crossing < 0) {
+          first_crossing = at;
+        } else if (--swings == 0) {
+          return at - first_crossing;
+        }
+      }
+      last = now;
+    }
+    return -1;
+  }
+};
+
+TEST(Prediction, APendulumSwingsByItsFormula) {
+  for (const double angle : {0.05, 0.5, 1.0}) {
+    Pendulum p;
+    p.gravity({0, 0, -9.81});
+    p.swing_out(angle);
+    const double a2 = angle * angle;
+    const double small = 2 * kPi * std::sqrt(p.inertia / (Pendulum::kMass * 9.81 * Pendulum::kLength));
+    const double exact = small * (1 + a2 / 16 + 11 * a2 * a2 / 3072 + 173 * a2 * a2 * a2 / 737280);
+    EXPECT_NEAR(p.period(5) / 5, exact, 1e-3 * exact) << angle;
+  }
+}
+
+TEST(Prediction, ASpringSwingsByItsFormulaAndSagsByItsLoad) {
+  for (const double stiffness : {2.0, 20.0, 100.0}) {
+    Pendulum p;
+    Motor& motor = *p.robot.add_motor(p.hinge).value();
+    p.set(motor.id(), "mode", {3});
+    p.set_one(motor.id(), "angular_spring_stiffness", 2, stiffness);
+    p.swing_out(0.3);
+    const double expected = 2 * kPi * std::sqrt(p.inertia / stiffness);
+    EXPECT_NEAR(p.period(5) / 5, expected, 0.005 * expected) << stiffness;
+
+    // held out level by gravity's torque along its arm: k·a = m·g·l·cos(a), with a rest at level
+    Pendulum q;
+    Motor& holds = *q.robot.add_motor(q.hinge).value();
+    q.set(holds.id(), "mode", {3});
+    q.set(holds.id(), "target", {-kPi / 2});
+    q.set_one(holds.id(), "angular_spring_stiffness", 2, stiffness);
+    q.set_one(holds.id(), "angular_spring_damping", 2, 2 * std::sqrt(stiffness * q.inertia));
+    q.swing_out(-kPi / 2);
+    q.gravity({0, 0, -1});
+    q.ticks(1200);
+    const double load = Pendulum::kMass * Pendulum::kLength;
+    double sag = 0;
+    for (int i = 0; i < 200; i++) sag += 0.5 * (load * std::cos(sag) / stiffness - sag);
+    EXPECT_NEAR(q.hinge.value() + kPi / 2, sag, 0.01 * sag) << stiffness;
+  }
+}
+
+TEST(Prediction, AServoGoesAtItsSpeedRestsAndStalls) {
+  Pendulum p;
+  Motor& motor = *p.robot.add_motor(p.hinge).value();
+  p.set(motor.id(), "speed", {1.5});
+  p.set(motor.id(), "target", {1.2});
+  for (int i = 1; i <= 40; i++) {
+    p.ticks(1);
+    EXPECT_NEAR(p.hinge.value(), 1.5 * i / 60, 0.01);
+  }
+  p.ticks(60);
+  EXPECT_NEAR(p.hinge.value(), 1.2, 1e-4);
+  EXPECT_NEAR(p.number(p.hinge.id(), "speed"), 0, 1e-4);
+
+  // with gravity it bears m·g·l·sin(a) at rest, and tells so: torque on the child, right-handed
+  p.gravity({0, 0, -9.81});
+  p.ticks(120);
+  EXPECT_NEAR(p.hinge.value(), 1.2, 1e-3);
+  const double load = Pendulum::kMass * 9.81 * Pendulum::kLength * std::sin(p.hinge.value());
+  EXPECT_NEAR(p.vec(motor.id(), "applied_torque").z, load, 0.01 * load);
+
+  // with less it cannot hold, and falls with what is missing
+  p.set_one(motor.id(), "max_angular_force", 2, 0.6 * load);
+  p.ticks(3);
+  EXPECT_NEAR(p.number(p.hinge.id(), "speed"), -0.4 * load / p.inertia * 3 / 60, 0.05 * load / p.inertia * 3 / 60);
+}
+
+TEST(Prediction, LimitsHoldOnEachAxisAndSignAndBeyondPi) {
+  for (int axis = 3; axis < 6; axis++) {
+    for (const double at : {4.5, 9.0}) {
+      for (const double way : {1.0, -1.0}) {
+        OneAxis a(axis);
+        way > 0 ? a.limits(-0.5, at) : a.limits(-at, 0.5);
+        a.pushed_ticks(600, way * 0.2);
+        EXPECT_NEAR(a.x(), way * at, 2e-3) << axis;
+        a.pushed_ticks(900, -way * 0.2);
+        EXPECT_NEAR(a.x(), -way * 0.5, 2e-3) << axis;
+      }
+    }
+  }
+}
+
+TEST(Prediction, AServoOfALimitedJointGoesTheAllowedWayRound) {
+  OneAxis a(5);
+  a.limits(-2.5, 2.5);
+  a.of_motor("active", 1);
+  a.of_motor("servo_active", 1);
+  a.of_motor("velocity", 3);
+  a.of_motor("servo_position", 2.4);
+  a.ticks(120);
+  EXPECT_NEAR(a.x(), 2.4, 1e-3);
+  a.of_motor("servo_position", -2.4);  // over pi it would be nearer
+  a.ticks(60);
+  EXPECT_NEAR(a.x(), 2.4 - 3, 0.1);
+  a.ticks(120);
+  EXPECT_NEAR(a.x(), -2.4, 1e-3);
+}
+
+// A floating arm thrashes about with its servos: inner forces move neither its centre nor its momentum.
+TEST(Prediction, AFloatingBodyKeepsItsMomentum) {
+  Stage s;
+  Body& arm = make_arm(s, "arm", {5, {0, 0, 0}, false});
+  const auto momentum = [&] {
+    Vec3 linear(0);
+    Vec3 angular(0);
+    for (const auto& part : arm.parts()) {
+      const double m = s.number(part->id(), "mass");
+      const Vec3 size = part.get() == arm.root() ? Vec3(0.2, 0.2, 0.1) : Vec3(0.1, 0.08, 0.2);
+      const Quat q = part->pose().rotation;
+      linear += m * part->linear_velocity();
+      angular += m * glm::cross(part->center(), part->linear_velocity()) +
+                 q * (box_inertia(m, size) * (glm::conjugate(q) * part->angular_velocity()));
+    }
+    return std::pair(linear, angular);
+  };
+  s.set(arm.id(), "linear_velocity", {0.3, -0.2, 0.1});
+  s.world.settle();
+  const auto [linear, angular] = momentum();
+  double most = 0;
+  for (int i = 0; i < 180; i++) {
+    wave(s, arm, s.world.time());
+    s.ticks(1);
+    for (const auto& part : arm.parts()) most = std::max(most, glm::length(part->angular_velocity()));
+  }
+  EXPECT_GT(most, 1);  // it did thrash
+  const auto [linear_after, angular_after] = momentum();
+  EXPECT_LT(glm::length(linear_after - linear), 1e-4);
+  EXPECT_LT(glm::length(angular_after - angular), 3e-3);
+}
+
+TEST(Prediction, MirroredRobotsMoveMirrored) {
+  Stage s;
+  s.gravity({0, 0, -9.81});
+  Body& left = make_arm(s, "left", {5, {0, 3, 0}, true, 1, 0.05});
+  Body& right = make_arm(s, "right", {5, {0, -3, 0}, true, -1, 0.05});
+  for (int i = 0; i < 120; i++) {
+    wave(s, left, s.world.time());
+    wave(s, right, s.world.time());
+    s.ticks(1);
+  }
+  for (std::size_t i = 0; i < left.parts().size(); i++) {
+    const Vec3 a = left.parts()[i]->pose().position;
+    const Vec3 b = right.parts()[i]->pose().position;
+    EXPECT_LT(glm::length(a - Vec3(b.x, -b.y, b.z)), 1e-4) << i;
+  }
+  EXPECT_GT(glm::length(left.parts().back()->pose().position - Vec3(0, 3.25, 1.25)), 0.1);
+}
+
+}  // namespace
+}  // namespace limber

@@ -1,0 +1,217 @@
+// What the rows of the world and of bodies do, as numbers measured in the world.
+#include "sim/row_effects.h"
+#include "sim/stage.h"
+
+namespace limber::test {
+
+namespace {
+
+void expect_near(const Vec3& a, const Vec3& b, double tolerance, std::string_view what = "") {
+  for (int i = 0; i < 3; i++) EXPECT_NEAR(a[i], b[i], tolerance) << what << " axis " << i;
+}
+
+// Velocities are changed first, then positions: after n steps x = g·h²·n(n+1)/2, not g·t²/2.
+double fall(double g, double h, int n) { return g * h * h * n * (n + 1) / 2; }
+
+void gravity() {
+  Stage s;
+  Part& ball = s.lone(sphere_model(0.1), 3);
+  s.gravity({1.5, -2, 9.81});
+  s.ticks(60);
+  expect_near(ball.linear_velocity(), {1.5, -2, 9.81}, 1e-4);
+}
+
+void timestep() {
+  for (const double dt : {1.0 / 60, 0.002, 0.05}) {
+    Stage s;
+    Part& ball = s.lone(sphere_model(0.1), 1);
+    s.set(s.world.id(), "timestep", {dt});
+    s.gravity({0, 0, -10});
+    s.ticks(10);
+    EXPECT_NEAR(s.world.time(), 10 * dt, 1e-12);
+    EXPECT_NEAR(ball.pose().position.z, -fall(10, dt / 4, 40), 1e-4 * fall(10, dt / 4, 40));
+  }
+}
+
+void substeps() {
+  for (const int n : {1, 4, 7}) {
+    Stage s;
+    Part& ball = s.lone(sphere_model(0.1), 1);
+    s.substeps(n);
+    s.gravity({0, 0, -9.81});
+    s.ticks(30);
+    const double expected = fall(9.81, 1.0 / 60 / n, 30 * n);
+    EXPECT_NEAR(ball.pose().position.z, -expected, 2e-6 * expected) << n;
+    // a resolution: the finer, the nearer to g·t²/2
+    EXPECT_NEAR(expected - 9.81 / 8, 9.81 / 4 / 60 / n, 1e-12);
+  }
+}
+
+// Largest gap of a chain with a heavy end, which few rounds cannot hold.
+double gap_of_chain(int iterations) {
+  Stage s;
+  s.iterations(iterations);
+  s.gravity({0, 0, -9.81});
+  Body& chain = s.body("chain");
+  Part* last = &s.part(chain, sphere_model(0.05), 0);
+  double gap = 0;
+  std::vector<Joint*> joints;
+  for (int i = 1; i <= 10; i++) {
+    Part& link = s.part(chain, box_model({0.2, 0.1, 0.1}), i == 10 ? 20 : 1, {{0.2 * i, 0, 0}, quat_identity()});
+    joints.push_back(
+        chain.add_joint("j" + std::to_string(i), *last, link, JointType::revolute, {0.2 * i - 0.1, 0, 0}, {0, 1, 0})
+            .value());
+    last = &link;
+  }
+  for (int i = 0; i < 60; i++) {
+    s.ticks(1);
+    for (const Joint* joint : joints) gap = std::max(gap, glm::length(joint->constraint().offsets()));
+  }
+  return gap;
+}
+
+void solver_iterations() {
+  EXPECT_LT(gap_of_chain(200), 0.2 * gap_of_chain(4));
+  Stage s;
+  s.iterations(17);
+  s.ticks(1);
+  EXPECT_EQ(s.world.bullet().getSolverInfo().m_numIterations, 17);
+}
+
+void solver() {
+  Stage s;
+  const Row& row = World::table().at("solver");
+  ASSERT_EQ(row.choices, std::vector<std::string>{"iterative"});
+  const double other = 1;
+  const Result<SetOutcome> outcome = s.store.set(s.world.id(), row, {&other, 1});
+  ASSERT_FALSE(outcome);
+  EXPECT_EQ(outcome.error(), "/physics/sim/solver has the choices iterative; 1 is none of them");
+}
+
+void seed() {
+  Stage a;
+  Stage b;
+  EXPECT_EQ(a.world.seed(), 1u);
+  EXPECT_EQ(a.world.state_hash(), b.world.state_hash());
+  b.set(b.world.id(), "seed", {12345678901});
+  EXPECT_EQ(b.world.seed(), 12345678901u);
+  EXPECT_NE(a.world.state_hash(), b.world.state_hash());
+}
+
+// How ticks are paced is the clock's matter: a tick itself is the same.
+void pacing(const char* row, double value) {
+  std::uint64_t hash[2] = {};
+  for (int i = 0; i < 2; i++) {
+    Stage s;
+    s.gravity({0, 0, -9.81});
+    s.lone(sphere_model(0.1), 1);
+    if (i == 1) s.set(s.world.id(), row, {value});
+    s.ticks(6);
+    EXPECT_EQ(s.number(s.world.id(), "tick"), 6);
+    EXPECT_NEAR(s.number(s.world.id(), "time"), 0.1, 1e-12);
+    hash[i] = s.world.state_hash();
+  }
+  EXPECT_EQ(hash[0], hash[1]);
+}
+
+// Two boxes on a hinge, bent by 0.7 rad, on their way through space.
+struct Pair : Stage {
+  Body& robot = body("robot");
+  Part& a = part(robot, box_model(Vec3(0.2)), 2, {{1, 0, 0}, quat_identity()});
+  Part& b = part(robot, box_model({0.2, 0.3, 0.1}), 1, {{1.5, 0, 0}, quat_identity()});
+  Joint& hinge = *robot.add_joint("hinge", a, b, JointType::revolute, {1.25, 0, 0}, {0, 1, 0}).value();
+  Pair() {
+    const Pose pivot{{1.25, 0, 0}, quat_axis({0, 1, 0}, 0.7)};
+    b.set_pose(pivot * Pose{{0.25, 0, 0}, quat_identity()});
+    world.settle();
+  }
+};
+
+void body_position() {
+  Pair p;
+  p.set(p.b.id(), "linear_velocity", {0.1, 0, 0});
+  const Vec3 before = p.b.pose().position;
+  p.set(p.robot.id(), "position", {-3, 4, 5});
+  p.world.settle();
+  expect_near(p.a.pose().position, {-3, 4, 5}, 1e-12);
+  expect_near(p.b.pose().position, before + Vec3(-4, 4, 5), 1e-12);
+  expect_near(from_bt(p.b.rigid().getWorldTransform().getOrigin()), before + Vec3(-4, 4, 5), 1e-6);
+  EXPECT_NEAR(p.number(p.hinge.id(), "value"), 0.7, 1e-6);
+  expect_near(p.b.linear_velocity(), {0.1, 0, 0}, 0);
+}
+
+void body_rotation() {
+  Pair p;
+  p.set(p.b.id(), "angular_velocity", {0, 0.3, 0});
+  const Quat turn = quat_axis(normalized({1, 2, 3}), 2.1);
+  const Vec3 arm = p.b.pose().position - p.a.pose().position;
+  p.set(p.robot.id(), "rotation", {turn.x, turn.y, turn.z, turn.w});
+  p.world.settle();
+  expect_near(p.a.pose().position, {1, 0, 0}, 1e-12);
+  expect_near(p.b.pose().position, Vec3(1, 0, 0) + turn * arm, 1e-12);
+  EXPECT_NEAR(p.number(p.hinge.id(), "value"), 0.7, 1e-6);
+  expect_near(p.b.angular_velocity(), {0, 0.3, 0}, 0);
+}
+
+void body_linear_velocity() {
+  Pair p;
+  p.set(p.robot.id(), "linear_velocity", {1, 2, 3});
+  const Vec3 a = p.a.pose().position;
+  const Vec3 b = p.b.pose().position;
+  p.ticks(60);
+  expect_near(p.a.pose().position - a, {1, 2, 3}, 2e-5);
+  expect_near(p.b.pose().position - b, {1, 2, 3}, 2e-5);
+  expect_near(p.vec(p.robot.id(), "linear_velocity"), {1, 2, 3}, 1e-5);
+}
+
+void body_angular_velocity() {
+  Pair p;
+  const Vec3 omega(0.2, -0.4, 1.1);
+  p.set(p.robot.id(), "linear_velocity", {0.5, 0, 0});
+  p.set(p.robot.id(), "angular_velocity", {omega.x, omega.y, omega.z});
+  p.world.settle();
+  for (const Part* part : {&p.a, &p.b}) {
+    expect_near(part->angular_velocity(), omega, 1e-12);
+    expect_near(part->linear_velocity(), Vec3(0.5, 0, 0) + glm::cross(omega, part->center() - p.a.center()), 1e-12);
+  }
+  // it turns as a whole: the hinge does not move
+  EXPECT_NEAR(p.hinge.constraint().rate(5), 0, 1e-6);
+}
+
+void body_enabled() {
+  Stage s;
+  s.gravity({0, 0, -10});
+  Part& ball = s.lone(sphere_model(0.1), 1, {{0, 0, 5}, quat_identity()});
+  s.ticks(6);
+  s.set(ball.body().id(), "enabled", {0});
+  const Pose at = ball.pose();
+  s.ticks(30);
+  EXPECT_EQ(ball.pose().position, at.position);
+  s.set(ball.body().id(), "enabled", {1});
+  s.ticks(6);
+  // it goes on where and as it was: twelve ticks of falling in all
+  EXPECT_NEAR(ball.pose().position.z, 5 - fall(10, 1.0 / 240, 48), 1e-5);
+}
+
+}  // namespace
+
+void add_world_effects(RowEffects& effects) {
+  effects[{"World", "gravity"}] = gravity;
+  effects[{"World", "timestep"}] = timestep;
+  effects[{"World", "substeps"}] = substeps;
+  effects[{"World", "solver_iterations"}] = solver_iterations;
+  effects[{"World", "solver"}] = solver;
+  effects[{"World", "seed"}] = seed;
+  effects[{"World", "paused"}] = [] { pacing("paused", 1); };
+  effects[{"World", "speed"}] = [] { pacing("speed", 7); };
+}
+
+void add_body_effects(RowEffects& effects) {
+  effects[{"Body", "position"}] = body_position;
+  effects[{"Body", "rotation"}] = body_rotation;
+  effects[{"Body", "linear_velocity"}] = body_linear_velocity;
+  effects[{"Body", "angular_velocity"}] = body_angular_velocity;
+  effects[{"Body", "enabled"}] = body_enabled;
+}
+
+}  // namespace limber::test
