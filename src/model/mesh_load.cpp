@@ -57,16 +57,25 @@ void keep_only(Assimp::Importer& importer, std::string_view ending) {
 
 std::string_view first_line(std::string_view text) { return text.substr(0, text.find('\n')); }
 
-/// What assimp takes without a word: ASCII files that stop in the middle.
-std::string stl_fault(std::string_view bytes) {
-  if (bytes.size() >= 84) {
-    std::uint32_t count = 0;
-    std::memcpy(&count, bytes.data() + 80, sizeof count);
-    if (bytes.size() == 84 + 50 * static_cast<std::size_t>(count)) return {};
+/// The part of an STL file that assimp reads to the end: binary ones cut to the length they say, ASCII ones whole. What
+/// is neither, and ASCII that stops in the middle (which assimp takes without a word), is refused.
+Result<std::string_view> stl_bytes(std::string_view bytes) {
+  const std::string_view start = bytes.substr(0, 512);
+  const bool seven_bit =
+      std::all_of(start.begin(), start.end(), [](char c) { return static_cast<unsigned char>(c) < 127; });
+  std::uint32_t count = 0;
+  if (bytes.size() >= 84) std::memcpy(&count, bytes.data() + 80, sizeof count);
+  const std::size_t said = 84 + 50 * static_cast<std::size_t>(count);
+  const bool ascii = seven_bit && bytes.starts_with("solid") && bytes.find("facet") != std::string_view::npos &&
+                     bytes.find("vertex") != std::string_view::npos;
+  if (count > 0 && (bytes.size() == said || (bytes.size() > said && !ascii))) return bytes.substr(0, said);
+  if (!ascii) {
+    return Error{"can't be read: neither ASCII STL nor binary STL as long as it says. Export it again as binary STL."};
   }
-  const bool ascii = bytes.substr(0, 5) == "solid" && bytes.find("facet") != std::string_view::npos;
-  if (ascii && bytes.find("endsolid") == std::string_view::npos) return "the ASCII STL stops before 'endsolid'";
-  return {};
+  if (bytes.find("endsolid") == std::string_view::npos) {
+    return Error{"can't be read: the ASCII STL stops before 'endsolid'. Export it again as binary STL."};
+  }
+  return bytes;
 }
 
 /// Triangles of all nodes, in the frame of the root.
@@ -202,12 +211,12 @@ Result<MeshFormat> mesh_format_of(std::string_view path) {
 Result<std::shared_ptr<const MeshModel>> mesh_from_bytes(std::string_view bytes, MeshFormat format, const Vec3& scale,
                                                          const std::string& name) {
   if (bytes.empty()) return Error{"is empty. Export it again."};
-  const std::string fault = format == MeshFormat::stl ? stl_fault(bytes) : std::string();
-  if (!fault.empty()) return Error{fmt::format("{}. Export it again.", fault)};
   try {
-    Result<std::string> collada = format == MeshFormat::dae ? clean_collada(bytes) : std::string();
+    const Result<std::string> collada = format == MeshFormat::dae ? clean_collada(bytes) : std::string();
     if (!collada) return Error{collada.error()};
-    if (format == MeshFormat::dae) bytes = *collada;
+    const Result<std::string_view> stl = format == MeshFormat::stl ? stl_bytes(bytes) : bytes;
+    if (!stl) return Error{stl.error()};
+    bytes = format == MeshFormat::dae ? std::string_view(*collada) : *stl;
     Result<Soup> soup = read_soup(bytes, kEndings[static_cast<std::size_t>(format)]);
     if (!soup) return Error{soup.error()};
     for (Vec3& v : soup->vertices) {

@@ -49,6 +49,7 @@ TEST(MeshLoad, EveryFormatGivesTheSameBox) {
   const test::Solid box = test::box({1, 2, 3});
   expect_box(load(test::binary_stl(box), MeshFormat::stl), {1, 2, 3}, "binary STL");
   expect_box(load(test::binary_stl(box, "solid but binary"), MeshFormat::stl), {1, 2, 3}, "binary STL that says solid");
+  expect_box(load(test::binary_stl(box) + "more", MeshFormat::stl), {1, 2, 3}, "binary STL with a tail");
   expect_box(load(test::ascii_stl(box), MeshFormat::stl), {1, 2, 3}, "ASCII STL");
   expect_box(load(test::obj(box), MeshFormat::obj), {1, 2, 3}, "OBJ");
   for (const char* up : {"X_UP", "Y_UP", "Z_UP"}) {
