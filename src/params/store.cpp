@@ -20,6 +20,12 @@ const Table& group_table() {
   return table;
 }
 
+// grows by a quarter, not to the double: a thousand bodies' values are most of what they weigh
+template <class T>
+void make_room(std::vector<T>& v, std::size_t more) {
+  if (v.size() + more > v.capacity()) v.reserve(v.size() + v.size() / 4 + more);
+}
+
 }  // namespace
 
 Store::Store() {
@@ -48,6 +54,7 @@ std::uint32_t Store::take_block(std::vector<double>& block, std::vector<std::vec
     return base;
   }
   const auto base = static_cast<std::uint32_t>(block.size());
+  make_room(block, width);
   block.resize(block.size() + width, 0.0);
   return base;
 }
@@ -57,6 +64,8 @@ NodeId Store::add(const Table& table, NodeId parent, std::string name, void* thi
   std::uint32_t slot = 0;
   if (free_slots_.empty()) {
     slot = static_cast<std::uint32_t>(slots_.size());
+    make_room(slots_, 1);
+    make_room(nodes_, 1);
     slots_.emplace_back();
     nodes_.emplace_back();
   } else {
@@ -69,9 +78,9 @@ NodeId Store::add(const Table& table, NodeId parent, std::string name, void* thi
   s.kept = take_block(kept_, spare_kept_, table.kept_width());
   s.live = take_block(live_, spare_live_, table.live_width());
   const NodeId id{slot, s.generation};
-  nodes_[slot] = {&table, name, thing, parent, {}, 0};
+  nodes_[slot] = {&table, std::move(name), thing, parent, {}, 0};
   nodes_[parent.slot].children.push_back(id);
-  child_of_.emplace(ChildKey{parent.slot, std::move(name)}, id);
+  child_of_.insert(slot);
   for (const Row& row : table.rows()) {
     if (row.stored()) std::copy_n(row.initial.data(), row.width, slot_values(id, row));
   }
@@ -97,7 +106,7 @@ void Store::release(NodeId id) {
   for (const NodeId child : nodes_[id.slot].children) release(child);
   Node& node = nodes_[id.slot];
   NodeSlot& slot = slots_[id.slot];
-  child_of_.erase(child_of_.find(ChildKeyView{node.parent.slot, node.name}));
+  child_of_.erase(child_of_.find(id.slot));
   const auto give_back = [](std::vector<std::vector<std::uint32_t>>& spare, std::uint32_t base, std::uint32_t width) {
     if (width == 0) return;
     if (spare.size() <= width) spare.resize(width + 1);
@@ -123,8 +132,8 @@ void Store::remove(NodeId id) {
 }
 
 NodeId Store::child(NodeId parent, std::string_view name) const {
-  const auto found = child_of_.find(ChildKeyView{parent.slot, name});
-  return found == child_of_.end() ? NodeId{} : found->second;
+  const auto found = child_of_.find(ChildKey{parent.slot, name});
+  return found == child_of_.end() ? NodeId{} : NodeId{*found, slots_[*found].generation};
 }
 
 std::string Store::path(NodeId id) const {

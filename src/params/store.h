@@ -6,7 +6,7 @@
 #include <span>
 #include <string>
 #include <string_view>
-#include <unordered_map>
+#include <unordered_set>
 #include <vector>
 
 #include "base/id.h"
@@ -39,6 +39,8 @@ struct SetOutcome {
 class Store {
  public:
   Store();
+  Store(const Store&) = delete;
+  Store& operator=(const Store&) = delete;
 
   /// The root of the tree; it has no rows.
   NodeId root() const { return root_; }
@@ -118,28 +120,29 @@ class Store {
     std::vector<NodeId> children;
     std::uint64_t marks = 0;
   };
+  // children are found by parent and name; the set holds slots, the names stand in the nodes alone
   struct ChildKey {
     std::uint32_t parent;
-    std::string name;
+    std::string_view name;
     bool operator==(const ChildKey&) const = default;
   };
-  struct ChildKeyView {
-    std::uint32_t parent;
-    std::string_view name;
-  };
-  struct ChildHash {
+  struct ChildOf {
     using is_transparent = void;
-    std::size_t operator()(const ChildKey& k) const { return hash(k.parent, k.name); }
-    std::size_t operator()(const ChildKeyView& k) const { return hash(k.parent, k.name); }
-    static std::size_t hash(std::uint32_t parent, std::string_view name) {
-      return std::hash<std::string_view>{}(name) ^ (parent * 0x9e3779b97f4a7c15u);
+    const std::vector<Node>* nodes;
+    ChildKey key(std::uint32_t slot) const { return {(*nodes)[slot].parent.slot, (*nodes)[slot].name}; }
+    ChildKey key(const ChildKey& k) const { return k; }
+  };
+  struct ChildHash : ChildOf {
+    template <class K>
+    std::size_t operator()(const K& of) const {
+      const ChildKey k = key(of);
+      return std::hash<std::string_view>{}(k.name) ^ (k.parent * 0x9e3779b97f4a7c15u);
     }
   };
-  struct ChildEqual {
-    using is_transparent = void;
+  struct ChildEqual : ChildOf {
     template <class A, class B>
     bool operator()(const A& a, const B& b) const {
-      return a.parent == b.parent && std::string_view(a.name) == std::string_view(b.name);
+      return key(a) == key(b);
     }
   };
 
@@ -161,7 +164,7 @@ class Store {
   std::vector<double> live_;
   std::vector<std::vector<std::uint32_t>> spare_kept_;  // by width
   std::vector<std::vector<std::uint32_t>> spare_live_;
-  std::unordered_map<ChildKey, NodeId, ChildHash, ChildEqual> child_of_;
+  std::unordered_set<std::uint32_t, ChildHash, ChildEqual> child_of_{0, ChildHash{{&nodes_}}, ChildEqual{{&nodes_}}};
   std::vector<const Table*> tables_;
   std::vector<NodeId> marked_;
   std::vector<NodeId> applying_;
