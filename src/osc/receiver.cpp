@@ -154,7 +154,6 @@ void Receiver::receive(int fd) {
     }
     if (static_cast<std::size_t>(count) < kBatch) break;
   }
-  if (std::exchange(pushed_, false)) link_.wake_engine();
 }
 
 void Receiver::take_from(Listening& socket, const char* data, std::size_t size, const Endpoint& from) {

@@ -39,11 +39,12 @@ class Receiver {
   std::vector<int> descriptors() const;
   std::vector<Endpoint> bound() const;
 
-  /// Reads what waits in the socket, at most a thousand datagrams, so that streams get their turn.
+  /// Reads what waits in the socket, at most a thousand datagrams, so that streams get their turn. Call release_due()
+  /// after it.
   void receive(int fd);
   /// One datagram, as if it had come in by a socket. The fuzz target begins here.
   void take(const char* data, std::size_t size, const Endpoint& from);
-  /// Gives the engine the held bundles that are due.
+  /// Gives the engine the held bundles that are due, and wakes it when anything came since the last call.
   void release_due();
   std::optional<std::int64_t> wait() const { return held_.wait(); }
 
