@@ -53,6 +53,8 @@ void Scene::collect_garbage() { vm_->collect_garbage(); }
 
 std::uint64_t Scene::state_hash(std::uint64_t start) const { return context_->hash(start); }
 
+std::string Scene::names() { return vm_->names(); }
+
 const std::string& Scene::show_folder() const { return context_->files.show_folder(); }
 
 }  // namespace limber

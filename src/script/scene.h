@@ -38,6 +38,8 @@ class Scene {
   void collect_garbage();
   /// A world's hash with the bits of the scene's generator and parameters.
   std::uint64_t state_hash(std::uint64_t start) const;
+  /// Every name that a scene sees, one a line: globals, library.member, thing.member, thing:method.
+  std::string names();
   /// The folder that the scene's show lives in.
   const std::string& show_folder() const;
 

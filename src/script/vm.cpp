@@ -98,6 +98,7 @@ void Vm::keep_entries() {
     start_ = keep("start");
     tick_ = keep("tick");
     message_ = keep("message");
+    names_ = keep("names");
   }
   lua_settop(L, 0);
 }
@@ -165,6 +166,14 @@ bool Vm::message(const Message& message, const Origin& origin) {
   const bool heard = call(static_cast<int>(message.args.size()) + 2, 1) && lua_toboolean(L, -1) != 0;
   lua_settop(L, 0);
   return heard;
+}
+
+std::string Vm::names() {
+  lua_State* const L = state_.get();
+  lua_rawgeti(L, LUA_REGISTRYINDEX, names_);
+  std::string names = call(0, 1) ? std::string(text_at(L, -1)) : std::string();
+  lua_settop(L, 0);
+  return names;
 }
 
 void Vm::collect_garbage() {

@@ -30,6 +30,8 @@ class Vm {
   void tick(double dt);
   /// The handlers of osc:on that fit; whether there were any. [sim]
   bool message(const Message& message, const Origin& origin);
+  /// Every name that a scene sees, one a line: globals, library.member, thing.member, thing:method. [sim]
+  std::string names();
   /// Collects for about 100 µs when there is enough to collect. The collector rests at all other times. [sim]
   void collect_garbage();
 
@@ -46,6 +48,7 @@ class Vm {
   int start_ = -1;
   int tick_ = -1;
   int message_ = -1;
+  int names_ = -1;
   double used_after_cycle_ = 0;  // kB
   bool collecting_ = false;
 };

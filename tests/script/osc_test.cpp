@@ -11,7 +11,7 @@ using Lines = std::vector<std::string>;
 std::string text_of(const Message& message) {
   std::string text = message.address;
   for (const Arg& arg : message.args) {
-    text += arg.kind == Arg::Kind::text ? " '" + arg.text + "'"
+    text += arg.kind == Arg::Kind::text      ? " '" + arg.text + "'"
             : arg.kind == Arg::Kind::boolean ? (arg.number != 0 ? " true" : " false")
                                              : fmt::format(" {}", arg.number);
   }
@@ -58,8 +58,9 @@ osc:on("/ask", function(x) print(osc.address, osc.sender) osc:reply("/answer", x
   EXPECT_EQ(stage.host.replies[0].first.ip, origin.ip);
   EXPECT_EQ(stage.host.replies[0].first.port, 5000);
   EXPECT_EQ(text_of(stage.host.replies[0].second), "/answer 42");
-  EXPECT_EQ(callback_error_of("", "osc:reply('/a')"),
-            "scripts/scene.lua:1: osc:reply answers the message that is being handled: call it inside an osc:on function");
+  EXPECT_EQ(
+      callback_error_of("", "osc:reply('/a')"),
+      "scripts/scene.lua:1: osc:reply answers the message that is being handled: call it inside an osc:on function");
 }
 
 TEST(Osc, SendsNumbersTextBooleansAndVectors) {
@@ -81,8 +82,9 @@ end)
 }
 
 TEST(Osc, AWrongMessageIsNotSentAtAll) {
-  for (const char* bad : {"osc:send('/a', 1, print)", "osc:send('/a', 1, 0 / 0)", "osc:send('a', 1)",
-                          "osc:send('/a', nil)", "osc:send('/ä')", "osc:send(1)", "osc:to('127.0.0.1:1'):send('/a', {})"}) {
+  for (const char* bad :
+       {"osc:send('/a', 1, print)", "osc:send('/a', 1, 0 / 0)", "osc:send('a', 1)", "osc:send('/a', nil)",
+        "osc:send('/ä')", "osc:send(1)", "osc:to('127.0.0.1:1'):send('/a', {})"}) {
     Stage stage;
     ASSERT_EQ(stage.play(std::string("sim:on_start(function() ") + bad + " end)"), "");
     EXPECT_EQ(stage.host.faults.size(), 1u) << bad;
@@ -107,8 +109,7 @@ osc:stream_to("127.0.0.1:9007")
             (StreamTarget{"10.0.0.5", 9005, 30, true, false, false, true, "arm*", 1472, true}));
   EXPECT_EQ(stage.host.plan.targets[1],
             (StreamTarget{"studio.local", 9006, 60, false, true, false, false, "*", 0, false}));
-  EXPECT_EQ(stage.host.plan.targets[2],
-            (StreamTarget{"127.0.0.1", 9007, 60, true, true, true, false, "*", -1, false}));
+  EXPECT_EQ(stage.host.plan.targets[2], (StreamTarget{"127.0.0.1", 9007, 60, true, true, true, false, "*", -1, false}));
 }
 
 TEST(Osc, AFailingRunPlansNothing) {
@@ -123,14 +124,15 @@ TEST(Osc, Mistakes) {
       {"osc:on('a', print)", "osc:on: 'a' is no address: it must begin with /"},
       {"osc:on('/a')", "osc:on takes a function, not nothing"},
       {"osc.on('/a', print)", "on is a method of osc: write osc:on(…), with a colon"},
-      {"osc:sned('/a')", "osc has no member 'sned'; there are: address, sender, on, send, reply, listen, stream_to, to"},
+      {"osc:sned('/a')",
+       "osc has no member 'sned'; there are: address, sender, on, send, reply, listen, stream_to, to"},
       {"osc.address = 1", "osc: 'address' can't be set"},
       {"osc:listen(70000)", "osc:listen takes a port 1 .. 65535, not 70000"},
       {"osc:stream_to('10.0.0.5')", "'10.0.0.5' is no address; write \"host:port\", such as \"127.0.0.1:9000\""},
       {"osc:stream_to('a:1', { rate = 0 })", "osc:stream_to: rate is 0.1 .. 1000, not 0"},
       {"osc:stream_to('a:1', { streams = 'poss' })", "osc:stream_to: there is no stream 'poss'; did you mean 'pos'?"},
       {"osc:stream_to('a:1', { bundle = 99 })", "osc:stream_to: bundle is 'off', 1472, 8192 or 65504, not 99"},
-      {"osc:stream_to('a:1', { bodys = 'x' })", "osc:stream_to: opts has no 'bodys'; did you mean 'bodies'?"},
+      {"osc:stream_to('a:1', { bodie = 'x' })", "osc:stream_to: opts has no 'bodie'; did you mean 'bodies'?"},
       {"osc:to('studio:9000')",
        "'studio' is a name, and a script must not wait for a name server; write the address in numbers"},
       {"osc:to('1.2.3.400:9000')",

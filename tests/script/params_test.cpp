@@ -19,8 +19,7 @@ params {
 
 TEST(Params, BecomeRowsOfScene) {
   Stage stage;
-  ASSERT_EQ(stage.run(std::string(kParams) +
-                      "print(params.wind, params.loud, params.place, params.mood, params.free)"),
+  ASSERT_EQ(stage.run(std::string(kParams) + "print(params.wind, params.loud, params.place, params.mood, params.free)"),
             "");
   EXPECT_EQ(stage.host.printed, std::vector<std::string>{"1.5\ttrue\tvec3(1, 2, 3)\tcalm\t-7"});
   const NodeId node = stage.store.child(stage.store.root(), "scene");
@@ -58,7 +57,8 @@ end)
   ASSERT_TRUE(stage.store.set(node, "place", place).ok());
   stage.world.settle();
   stage.tick(3);
-  EXPECT_EQ(stage.host.printed, (std::vector<std::string>{"3\tvec3(5, 1, 4)", "7\tvec3(5, 1, 4)", "10\tvec3(5, 1, 4)"}));
+  EXPECT_EQ(stage.host.printed,
+            (std::vector<std::string>{"3\tvec3(5, 1, 4)", "7\tvec3(5, 1, 4)", "10\tvec3(5, 1, 4)"}));
   EXPECT_EQ(stage.store.values(node, stage.store.table(node).at("mood"))[0], 1);
   EXPECT_EQ(stage.store.values(node, stage.store.table(node).at("loud"))[0], 0);
   // 7 + 4 and 10 + 4 are outside: said once
@@ -84,11 +84,10 @@ TEST(Params, Mistakes) {
   const std::string at = "scripts/scene.lua:1: ";
   const std::pair<const char*, const char*> cases[] = {
       {"params { 5 }", "params: entry 1 is a table { \"name\", default, … }, not 5"},
-      {"params { { 'my wind', 0 } }",
-       "params: entry 1 begins with a name of letters, digits and _, not 'my wind'"},
+      {"params { { 'my wind', 0 } }", "params: entry 1 begins with a name of letters, digits and _, not 'my wind'"},
       {"params { { 'a' } }",
        "params: 'a' needs a default that is a number, true or false, a vec3, or text with choices, not nothing"},
-      {"params { { 'a', 1, mni = 0 } }", "params: 'a' has no 'mni'; did you mean 'min'?"},
+      {"params { { 'a', 1, mi = 0 } }", "params: 'a' has no 'mi'; did you mean 'min'?"},
       {"params { { 'a', 1, min = 2, max = 1 } }", "params: 'a' has a min above its max"},
       {"params { { 'a', 1, unit = 'furlong' } }", nullptr},
       {"params { { 'a', 'x' } }", "params: 'a' is text, so it needs choices = { … }"},

@@ -85,9 +85,8 @@ struct Class {
 };
 
 std::vector<Class> classes() {
-  return {{World::table(), "sim"},  {Body::table(), "arm"},  {Part::table(), "link"},
-          {Joint::table(), "j1"},   {Joint::table(), "j2"},  {Motor::table(), "m1"},
-          {Motor::table(), "m2"}};
+  return {{World::table(), "sim"}, {Body::table(), "arm"}, {Part::table(), "link"}, {Joint::table(), "j1"},
+          {Joint::table(), "j2"},  {Motor::table(), "m1"}, {Motor::table(), "m2"}};
 }
 
 NodeId node_of(const Stage& stage, const std::string& expression) {
@@ -204,8 +203,9 @@ TEST(Things, OneNumberMeansTheOwnAxis) {
   EXPECT_EQ(arm_value("m2.max_linear_force"), "vec3(10000, 10000, 50)");
   EXPECT_EQ(value_of("j1.angular_lower_limit.z", std::string(kArm) + "j1.angular_lower_limit = -1"), "-1");
   EXPECT_EQ(arm_error("m1.linear_servo_position = 1"),
-            kLine + "motor 'arm/joint_1': one number for 'linear_servo_position' means the own axis, which this joint "
-                    "does not have among these three; give a vec3");
+            kLine +
+                "motor 'arm/joint_1': one number for 'linear_servo_position' means the own axis, which this joint "
+                "does not have among these three; give a vec3");
   EXPECT_EQ(value_of("m1.angular_active", std::string(kArm) + "m1.angular_active = false"), "{ false, false, false }");
   EXPECT_EQ(value_of("m1.angular_active[2]", std::string(kArm) + "m1.angular_active = { false, true, false }"), "true");
   EXPECT_EQ(arm_value("#m1.angular_active, m1.angular_active"), "3\t{ false, false, true }");
@@ -242,7 +242,8 @@ TEST(Things, ErrorTexts) {
       {"link.report_contacts = 1", "part 'arm/link': 'report_contacts' takes true or false, not 1"},
       {"m1.mode = 'sevo'", "motor 'arm/joint_1': 'mode' can't be 'sevo'; did you mean 'servo'?"},
       {"m1.mode = 2", "motor 'arm/joint_1': 'mode' takes one of 'off' 'spin' 'servo' 'spring', not 2"},
-      {"m1.angular_active = 1", "motor 'arm/joint_1': 'angular_active' takes three booleans, or one for all axes, not 1"},
+      {"m1.angular_active = 1",
+       "motor 'arm/joint_1': 'angular_active' takes three booleans, or one for all axes, not 1"},
       {"m1.angular_active[3] = true", "three booleans never change alone; set the whole: { false, false, true }"},
       {"link.position.z = 2", "a vec3 or quat never changes; set the whole value"},
       {"link.name = 'x'", "part 'arm/link': 'name' can be read, not set"},
@@ -263,8 +264,7 @@ TEST(Things, ErrorTexts) {
       {"arm:add_part('tip', box)", "there is a part 'tip' already; names are unique"},
       {"arm:add_part('new', 'bo')", "there is no shape 'bo'; did you mean 'box'?"},
       {"arm:add_part('new', box, { mas = 1 })", "add_part: opts has no 'mas'; did you mean 'mass'?"},
-      {"arm:add_part('new', box, { mass = -1 })",
-       "add_part: mass must not be negative (0: a part that never moves)"},
+      {"arm:add_part('new', box, { mass = -1 })", "add_part: mass must not be negative (0: a part that never moves)"},
       {"arm:add_joint('j', base, tip, { type = 'rvolute' })",
        "joint 'arm/j': there is no joint type 'rvolute'; did you mean 'revolute'?"},
       {"arm:add_joint('j', base, base)", "joint 'arm/j': a part can't hang on itself"},
@@ -282,12 +282,13 @@ TEST(Things, ErrorTexts) {
 }
 
 TEST(Things, ActionsWaitForCallbacks) {
-  EXPECT_EQ(arm_error("link:apply_force(vec3(1, 0, 0))"),
-            kLine + "part 'arm/link':apply_force acts on the running scene; at the top level use sim:on_start(function() … end)");
+  EXPECT_EQ(
+      arm_error("link:apply_force(vec3(1, 0, 0))"),
+      kLine +
+          "part 'arm/link':apply_force acts on the running scene; at the top level use sim:on_start(function() … end)");
   for (const char* action : {"arm:reset()", "arm:remove()", "sim:reset()", "osc:send('/a')", "osc:reply('/a')",
                              "sim:after(1, print):cancel()", "link:apply_impulse({ 0, 0, 1 })"}) {
-    EXPECT_NE(arm_error(action).find("acts on the running scene; at the top level use sim:on_start"),
-              std::string::npos)
+    EXPECT_NE(arm_error(action).find("acts on the running scene; at the top level use sim:on_start"), std::string::npos)
         << action;
     if (std::string(action).find("reply") == std::string::npos) {
       EXPECT_EQ(callback_error_of(kArm, action), "no error") << action;
@@ -332,8 +333,8 @@ TEST(Things, Lists) {
             "part 'arm/link'\tpart 'arm/tip'\tjoint 'arm/joint_1'\tpart 'arm/tip'");
   EXPECT_EQ(arm_value("sim:find_body('nobody'), sim:find_body('arm'), sim:body(1)"), "nil\tbody 'arm'\tbody 'arm'");
   const auto walk = [](const std::string& loop) {
-    return value_of("table.concat(seen, ' ')",
-                    std::string(kArm) + "local seen = {} for x, i in " + loop + " do seen[#seen + 1] = x.name .. i end");
+    return value_of("table.concat(seen, ' ')", std::string(kArm) + "local seen = {} for x, i in " + loop +
+                                                   " do seen[#seen + 1] = x.name .. i end");
   };
   EXPECT_EQ(walk("arm:parts()"), "base1 link2 tip3");
   EXPECT_EQ(walk("arm:parts('all')"), "base1 link2 tip3");
@@ -347,7 +348,8 @@ TEST(Things, Lists) {
                                                     "local seen = {} for i, m in ipairs(arm.motors) do seen[i] = "
                                                     "i .. m.name end"),
             "1joint_1 2joint_2");
-  EXPECT_EQ(arm_error("for x in arm:parts('tipp') do end"), kLine + "body 'arm' has no part 'tipp'; did you mean 'tip'?");
+  EXPECT_EQ(arm_error("for x in arm:parts('tipp') do end"),
+            kLine + "body 'arm' has no part 'tipp'; did you mean 'tip'?");
 }
 
 TEST(Things, AWalkPassesOverWhatGoes) {

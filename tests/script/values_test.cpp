@@ -109,10 +109,11 @@ TEST(Values, NoiseIsPerlins) {
   expect_values({{"math.noise(3)", "0"}, {"math.noise(3, -4, 250)", "0"}});
   EXPECT_NEAR(number_of("math.noise(3.14, 42, 7)"), 0.13691995878400012, 1e-15);
   EXPECT_NEAR(number_of("math.noise(-4.2, 1.7, 9.3)"), number_of("math.noise(251.8, 257.7, 265.3)"), 1e-9);
-  EXPECT_EQ(value_of("(function() local low, high = 0, 0 for i = 1, 20000 do local n = math.noise(i * 0.137, i * 0.731, i "
-                     "* 0.317) low, high = math.min(low, n), math.max(high, n) end return low >= -1 and high <= 1 and "
-                     "low < -0.7 and high > 0.7 end)()"),
-            "true");
+  EXPECT_EQ(
+      value_of("(function() local low, high = 0, 0 for i = 1, 20000 do local n = math.noise(i * 0.137, i * 0.731, i "
+               "* 0.317) low, high = math.min(low, n), math.max(high, n) end return low >= -1 and high <= 1 and "
+               "low < -0.7 and high > 0.7 end)()"),
+      "true");
 }
 
 TEST(Values, MistakesAreExplained) {
@@ -128,8 +129,7 @@ TEST(Values, MistakesAreExplained) {
   EXPECT_EQ(error_of("quat(1, 2)"), at + "quat takes four numbers x, y, z, w, or none");
   EXPECT_EQ(error_of("quat.axis(vec3(), 1)"), at + "quat.axis: the axis must not be zero");
   EXPECT_EQ(error_of("vec3():dot(3)"), at + "vec3:dot takes a vec3, not 3");
-  EXPECT_EQ(error_of("vec3():length():x()"),
-            at + "attempt to index a number value");
+  EXPECT_EQ(error_of("vec3():length():x()"), at + "attempt to index a number value");
 }
 
 }  // namespace

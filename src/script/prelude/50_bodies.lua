@@ -1,7 +1,7 @@
 -- What bodies, parts, joints, motors and shapes have beside their rows.
 local P = ...
 local ffi, api, ctx, answer, istype = P.ffi, P.api, P.ctx, P.answer, P.ffi.istype
-local fail, describe, thing, classes = P.fail, P.describe, P.thing, P.classes
+local fail, classes = P.fail, P.classes
 local body, part, joint, motor, shape = classes.body, classes.part, classes.joint, classes.motor, classes.shape
 local bodies, parts, joints, motors, shapes = 0, 1, 2, 3, 4
 local number = answer.number
@@ -159,7 +159,10 @@ local link_members = {
     return P.Q(number[3], number[4], number[5], number[6])
   end,
 }
-local function link_label(k) return string.format("link '%s/%s'", P.names[links[k.number_].body], links[k.number_].name) end
+local function link_label(k)
+  local entry = links[k.number_]
+  return string.format("link '%s/%s'", P.names[entry.body], entry.name)
+end
 ffi.metatype(K, {
   __index = function(k, key)
     local get = link_members[key]

@@ -1,6 +1,6 @@
 -- `sim`: the world's rows, shapes, bodies, URDF files.
 local P = ...
-local ffi, api, ctx, answer = P.ffi, P.api, P.ctx, P.answer
+local ffi, api, ctx = P.ffi, P.api, P.ctx
 local fail, describe, classes = P.fail, P.describe, P.classes
 local class = classes.sim
 local bodies, shapes = 0, 4
@@ -50,8 +50,8 @@ method("add_box_shape", function(_, name, size)
 end)
 for _, kind in ipairs { "cylinder", "capsule", "cone" } do
   method("add_" .. kind .. "_shape", function(_, name, radius, height)
-    local what = "add_" .. kind .. "_shape: "
-    return add_shape(name, kind, P.want_number(radius, what .. "the radius"), P.want_number(height, what .. "the height"))
+    local what = "add_" .. kind .. "_shape: the "
+    return add_shape(name, kind, P.want_number(radius, what .. "radius"), P.want_number(height, what .. "height"))
   end)
 end
 method("add_compound_shape", function(_, name) return add_shape(name, "compound") end)
@@ -111,7 +111,9 @@ method("load_urdf", function(_, path, opts)
   flag(1, opts.keep_fixed, "keep_fixed")
   motor_option(opts.motors)
   if opts.pose ~= nil then
-    if type(opts.pose) ~= "table" then fail("load_urdf: pose is a table { joint = value }, not %s", describe(opts.pose)) end
+    if type(opts.pose) ~= "table" then
+      fail("load_urdf: pose is a table { joint = value }, not %s", describe(opts.pose))
+    end
     for _, joint in ipairs(P.sorted_keys(opts.pose)) do
       joint = P.want_text(joint, "load_urdf: pose, a joint's name")
       api.urdf_pose(ctx, joint, #joint, P.want_number(opts.pose[joint], "load_urdf: pose, " .. joint))

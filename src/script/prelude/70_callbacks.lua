@@ -60,14 +60,18 @@ end
 local function beats(entry, time) return floor((time + kSlack) / entry.period) end
 
 method("every", function(_, seconds, f)
-  if P.want_number(seconds, "sim:every") <= 0 then fail("sim:every takes seconds above 0, not %s", tostring(seconds)) end
+  if P.want_number(seconds, "sim:every") <= 0 then
+    fail("sim:every takes seconds above 0, not %s", tostring(seconds))
+  end
   P.want_function(f, "sim:every")
   local entry = { period = seconds }
   entry.beat = beats(entry, now())
   return add_timer(f, entry)
 end)
 method("after", function(_, seconds, f)
-  if P.want_number(seconds, "sim:after") < 0 then fail("sim:after takes seconds from 0 on, not %s", tostring(seconds)) end
+  if P.want_number(seconds, "sim:after") < 0 then
+    fail("sim:after takes seconds from 0 on, not %s", tostring(seconds))
+  end
   P.want_function(f, "sim:after")
   return add_timer(f, { due = now() + seconds })
 end)

@@ -38,6 +38,7 @@ end
 
 local osc = {}
 local members = { "address", "sender", "on", "send", "reply", "listen", "stream_to", "to" }
+P.osc_members = members
 local function check(self, what)
   if self ~= P.osc then fail("%s is a method of osc: write osc:%s(…), with a colon", what, what) end
 end
@@ -61,7 +62,9 @@ function osc.listen(self, port)
   check(self, "listen")
   P.needs_top_level("osc:listen")
   P.want_number(port, "osc:listen")
-  if port < 1 or port > 65535 or port % 1 ~= 0 then fail("osc:listen takes a port 1 .. 65535, not %s", tostring(port)) end
+  if port < 1 or port > 65535 or port % 1 ~= 0 then
+    fail("osc:listen takes a port 1 .. 65535, not %s", tostring(port))
+  end
   api.osc_listen(ctx, port)
 end
 

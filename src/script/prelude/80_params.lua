@@ -1,7 +1,7 @@
 -- `params`: a scene's own parameters, rows of the node /scene.
 local P = ...
 local ffi, api, ctx, answer = P.ffi, P.api, P.ctx, P.answer
-local fail, describe, classes = P.fail, P.describe, P.classes
+local fail, describe = P.fail, P.describe
 local kNumber, kBoolean, kChoice, kVec3 = 0, 2, 3, 4  -- RowType of params/table.h
 
 local class, node  -- of the declared parameters
@@ -29,7 +29,9 @@ local function type_of(spec, name)
 end
 
 local function check_spec(spec, i)
-  if type(spec) ~= "table" then fail("params: entry %d is a table { \"name\", default, … }, not %s", i, describe(spec)) end
+  if type(spec) ~= "table" then
+    fail("params: entry %d is a table { \"name\", default, … }, not %s", i, describe(spec))
+  end
   local name = spec[1]
   if type(name) ~= "string" or not name:find("^[%a_][%w_]*$") or #name > 64 then
     fail("params: entry %d begins with a name of letters, digits and _, not %s", i, describe(name))
@@ -51,7 +53,9 @@ end
 
 local function choices_of(spec, name)
   local choices, at = spec.choices, nil
-  if type(choices) ~= "table" or #choices == 0 then fail("params: '%s' is text, so it needs choices = { … }", name) end
+  if type(choices) ~= "table" or #choices == 0 then
+    fail("params: '%s' is text, so it needs choices = { … }", name)
+  end
   for i, choice in ipairs(choices) do
     P.want_text(choice, "params: '" .. name .. "': a choice")
     if choice == spec[2] then at = i end

@@ -2,7 +2,7 @@
 local P = ...
 local ffi, api, ctx, istype = P.ffi, P.api, P.ctx, P.ffi.istype
 local fail, describe = P.fail, P.describe
-local native = { tostring = tostring, pcall = pcall, load = load, type = type, format = string.format, gsub = string.gsub,
+local native = { tostring = tostring, pcall = pcall, load = load, format = string.format, gsub = string.gsub,
   sort = table.sort, resume = coroutine.resume, create = coroutine.create, getmetatable = debug.getmetatable }
 
 -- tables, functions and coroutines have no address in texts: it would differ from run to run
@@ -24,7 +24,9 @@ local function plain(...)
   return true
 end
 local function string_format(text, ...)
-  if type(text) == "string" and text:find("%%[^%%%a]*p") then fail("string.format: %%p tells an address, which differs in each run") end
+  if type(text) == "string" and text:find("%%[^%%%a]*p") then
+    fail("string.format: %p tells an address, which differs in each run")
+  end
   if plain(...) then return native.format(text, ...) end
   local values, n = { ... }, select("#", ...)
   for i = 1, n do
@@ -126,9 +128,10 @@ local function copy(lib, names)
   for name in names:gmatch("%S+") do t[name] = lib[name] end
   return t
 end
+local kPlain = "assert error select tonumber type unpack rawequal rawget rawset getmetatable setmetatable pcall"
 local kString = "byte char find gmatch len lower match rep reverse sub upper"
-local kMath = "abs acos asin atan atan2 ceil cos cosh deg exp floor fmod frexp huge ldexp log log10 max min modf pi pow " ..
-  "rad sin sinh sqrt tan tanh"
+local kMath = "abs acos asin atan atan2 ceil cos cosh deg exp floor fmod frexp huge ldexp log log10 max min modf " ..
+  "pi pow rad sin sinh sqrt tan tanh"
 local kBit = "arshift band bnot bor bswap bxor lshift rol ror rshift tobit tohex"
 
 local function make_string()
@@ -153,9 +156,7 @@ local function add_libraries(env)
 end
 
 local function add_functions(env)
-  for name in ("assert error select tonumber type unpack rawequal rawget rawset getmetatable setmetatable pcall"):gmatch("%S+") do
-    env[name] = _G[name]
-  end
+  for name in kPlain:gmatch("%S+") do env[name] = _G[name] end
   env.ipairs, env.pairs, env.tostring = P.ipairs, fixed_pairs, show
   function env.xpcall(f, handler, ...)
     local function finish(ok, ...)
@@ -172,7 +173,9 @@ local function add_functions(env)
   end
   function env.loadstring(text, name) return env.load(text, name) end
   function env.collectgarbage(what)
-    if what ~= "count" then fail("collectgarbage: scripts may ask for 'count' only; limber collects after each tick") end
+    if what ~= "count" then
+      fail("collectgarbage: scripts may ask for 'count' only; limber collects after each tick")
+    end
     return collectgarbage("count")
   end
   function env.print(...)
@@ -189,7 +192,7 @@ end
 local function make_require(env)
   local loaded, loading = {}, {}
   return function(name)
-    if type(name) ~= "string" or not name:find("^[%w_]+$") and not name:find("^[%w_][%w_.]*[%w_]$") or name:find("..", 1, true) then
+    if type(name) ~= "string" or not ("." .. name):gsub("%.[%w_]+", ""):find("^$") then
       fail("require takes a name such as 'dance' or 'dance.steps', not %s", describe(name))
     end
     if loaded[name] ~= nil then return loaded[name] end
@@ -219,7 +222,8 @@ function P.make_env()
   env.sim, env.osc, env.params, env.state = P.sim, P.osc, P.params, {}
   return setmetatable(env, {
     __index = function(_, key)
-      fail("there is no global '%s'%s", tostring(key), P.hint(key, P.sorted_keys(env)))
+      local hint = P.hint(key, P.sorted_keys(env))
+      fail("there is no global '%s'%s", tostring(key), hint:find("did you mean", 1, true) and hint or "")
     end,
     __metatable = "environment",
   })
@@ -239,4 +243,24 @@ function P.entry.run(text, name)
   end
   if type(fault) ~= "table" then fault = { text = native.tostring(fault), file = name, line = 0 } end
   return fault.text, fault.file, fault.line
+end
+
+-- every name that a scene sees, one a line: globals, members of libraries, then members and methods of things
+function P.entry.names()
+  local lines = {}
+  local env = P.make_env()
+  for _, name in ipairs(P.sorted_keys(env)) do
+    local value = rawget(env, name)
+    lines[#lines + 1] = name
+    if type(value) == "table" and (getmetatable(value) == nil or name == "quat") then
+      for _, key in ipairs(P.sorted_keys(value)) do lines[#lines + 1] = name .. "." .. key end
+    end
+  end
+  for _, key in ipairs(P.osc_members) do lines[#lines + 1] = "osc." .. key end
+  for _, name in ipairs { "sim", "body", "part", "joint", "motor", "shape" } do
+    local class = P.classes[name]
+    for _, key in ipairs(P.sorted_keys(class.getters)) do lines[#lines + 1] = name .. "." .. key end
+    for _, key in ipairs(P.sorted_keys(class.methods)) do lines[#lines + 1] = name .. ":" .. key end
+  end
+  return table.concat(lines, "\n") .. "\n"
 end

@@ -1,0 +1,198 @@
+// The sandbox: the names that a script sees, pairs in a fixed order, texts without addresses, load, require,
+// coroutines.
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <sstream>
+
+#include "stage.h"
+
+namespace limber {
+namespace {
+
+using Lines = std::vector<std::string>;
+
+TEST(Sandbox, TheNamesThatAScriptSees) {
+  std::ifstream golden(LIMBER_SOURCE_DIR "/tests/script/globals.txt");
+  std::stringstream expected;
+  expected << golden.rdbuf();
+  Stage stage;
+  EXPECT_EQ(stage.scene.names(), expected.str())
+      << "tests/script/globals.txt lists every name; when the change is meant, put the names above into it";
+}
+
+TEST(Sandbox, NothingDangerousIsThere) {
+  for (const char* name :
+       {"os", "io", "ffi", "debug", "jit", "package", "module", "dofile", "loadfile", "getfenv", "setfenv", "newproxy",
+        "gcinfo", "next", "_G", "string.dump", "string.buffer", "math.randomseed", "table.new"}) {
+    const std::string said = value_of("pcall(function() return " + std::string(name) + " end)");
+    const bool absent = said.find("there is no global '" + std::string(name) + "'") != std::string::npos;
+    EXPECT_TRUE(absent || said == "true\tnil") << name << ": " << said;
+  }
+  EXPECT_EQ(error_of("require('ffi')").substr(0, 49), "scripts/scene.lua:1: there is no module 'ffi'; lo");
+  EXPECT_EQ(
+      value_of("getmetatable(''), getmetatable(vec3()), getmetatable(sim), getmetatable(osc), getmetatable(params)"),
+      "string\tffi\tffi\tosc\tparams");
+  EXPECT_EQ(value_of("pcall(setmetatable, osc, {})").substr(0, 5), "false");
+  EXPECT_EQ(value_of("(''):rep(3), ('a'):upper(), #('abc'), ('x').dump"), "\tA\t3\tnil");
+  EXPECT_EQ(value_of("collectgarbage('count') > 0"), "true");
+  EXPECT_EQ(error_of("collectgarbage()"),
+            "scripts/scene.lua:1: collectgarbage: scripts may ask for 'count' only; limber collects after each tick");
+}
+
+TEST(Sandbox, AScriptCanSpoilOnlyItsOwnLibraries) {
+  Stage stage;
+  ASSERT_EQ(stage.run("math.sin = nil string.format = nil table.sort = nil math.clamp = nil quat.euler = nil "
+                      "pairs = nil print(('%d'):format(3))"),
+            "");
+  EXPECT_EQ(stage.host.printed, Lines{"3"});
+  EXPECT_EQ(value_of("math.sin(0), string.format('%d', 3), quat.euler()"), "0\t3\tquat(0, 0, 0, 1)");
+}
+
+TEST(Sandbox, UndefinedGlobalsAreErrors) {
+  EXPECT_EQ(error_of("\nlocal x = vec2(1, 2)"), "scripts/scene.lua:2: there is no global 'vec2'; did you mean 'vec3'?");
+  EXPECT_EQ(error_of("if undefined_thing then end"), "scripts/scene.lua:1: there is no global 'undefined_thing'");
+  EXPECT_EQ(value_of("mine", "mine = 3"), "3");
+}
+
+TEST(Sandbox, PairsHasAFixedOrder) {
+  EXPECT_EQ(value_of("table.concat(seen, ' ')", R"(
+local box = sim:add_sphere_shape("s", 1)
+local one, two = sim:add_body("one"), sim:add_body("two")
+local p, q = one:add_part("p", box), one:add_part("q", box, { position = { 5, 0, 0 } })
+local t = { zebra = 1, [10] = 1, [2.5] = 1, ape = 1, [-1] = 1, [two] = 1, [q] = 1, [true] = 1, [one] = 1, [false] = 1,
+  [p] = 1, Ape = 1, "first", [box] = 1 }
+seen = {}
+for key in pairs(t) do seen[#seen + 1] = tostring(key) end)"),
+            "-1 1 2.5 10 Ape ape zebra false true body 'one' part 'one/p' part 'one/q' body 'two' shape 's'");
+  // while it walks, entries may be changed and taken out
+  EXPECT_EQ(value_of("table.concat(seen, ' ')", R"(
+local t = { a = 1, b = 2, c = 3 }
+seen = {}
+for key, value in pairs(t) do
+  seen[#seen + 1] = key .. value
+  t.b = nil
+  t[key] = 9
+end)"),
+            "a1 c3");
+  EXPECT_EQ(error_of("for k in pairs({ [{}] = 1 }) do end"),
+            "scripts/scene.lua:1: pairs: a key of this table is a table, which has no place in a fixed order; use "
+            "numbers, text or things");
+  EXPECT_EQ(error_of("pairs()"), "scripts/scene.lua:1: pairs takes a table, not nothing");
+}
+
+TEST(Sandbox, PairsOfAThousandKeysIsSorted) {
+  EXPECT_EQ(value_of("ok, count", R"(
+local t = {}
+for i = 1, 1000 do t["k" .. (i * 7919) % 10007] = i t[(i * 104729) % 1000003] = i end
+ok, count = true, 0
+local last
+for key in pairs(t) do
+  count = count + 1
+  if last and type(last) == type(key) and not (last < key) then ok = false end
+  if type(last) == "string" and type(key) == "number" then ok = false end
+  last = key
+end)"),
+            "true\t2000");
+}
+
+TEST(Sandbox, TextsHaveNoAddresses) {
+  EXPECT_EQ(value_of("print, {}, coroutine.create(print), tostring(print), sim, rng"),
+            "function\ttable\tthread\tfunction\tsim\trng");
+  EXPECT_EQ(value_of("string.format('%s %s %s %d %5.1f|%%', {}, print, vec3(1, 2, 3), 4, 2.5)"),
+            "table function vec3(1, 2, 3) 4   2.5|%");
+  EXPECT_EQ(value_of("('%s'):format({})"), "table");
+  EXPECT_EQ(value_of("setmetatable({}, { __tostring = function() return 'mine' end })"), "mine");
+  EXPECT_EQ(error_of("string.format('%p', {})"),
+            "scripts/scene.lua:1: string.format: %p tells an address, which differs in each run");
+  EXPECT_EQ(error_of("string.format('%-20p', {})"),
+            "scripts/scene.lua:1: string.format: %p tells an address, which differs in each run");
+}
+
+TEST(Sandbox, LoadTakesTextOnly) {
+  EXPECT_EQ(value_of("load('return 1 + 2')()"), "3");
+  EXPECT_EQ(value_of("loadstring('x = 5')() or x"), "5");
+  EXPECT_EQ(value_of("load('return y', 'n', 't', { y = 7 })()"), "7");
+  EXPECT_EQ(value_of("load('return 1 +', 'name')"), "nil\tname:1: unexpected symbol near '<eof>'");
+  EXPECT_EQ(value_of("load('\\27LJ\\2\\0\\0')").substr(0, 3), "nil");
+  EXPECT_EQ(error_of("load(function() return nil end)"), "scripts/scene.lua:1: load takes text, not a function");
+}
+
+TEST(Sandbox, XpcallPcallSelectUnpack) {
+  EXPECT_EQ(value_of("xpcall(function(...) return ... end, print, 1, nil, 3)"), "true\t1\tnil\t3");
+  EXPECT_EQ(value_of("xpcall(function() error('x', 0) end, function(e) return e .. '!' end)"), "false\tx!");
+  EXPECT_EQ(value_of("select('#', unpack({ 1, nil, 3 }, 1, 3))"), "3");
+}
+
+TEST(Sandbox, SortAndGsub) {
+  EXPECT_EQ(value_of("table.concat(t, ' ')", "t = { 3, 1, 2 } table.sort(t)"), "1 2 3");
+  EXPECT_EQ(value_of("table.concat(t, ' ')", "t = { 3, 1, 2 } table.sort(t, function(a, b) return a > b end)"),
+            "3 2 1");
+  EXPECT_EQ(value_of("('hello'):gsub('l', function(c) return c:upper() end)"), "heLLo\t2");
+  EXPECT_EQ(value_of("string.gsub('abc', '%w', '%0%0')"), "aabbcc\t3");
+  EXPECT_EQ(error_of("local function f(x) return (('x'):gsub('x', f)) end f()").substr(0, 88),
+            "scripts/scene.lua:1: string.gsub inside string.gsub, 16 deep: that is too deep");
+}
+
+TEST(Sandbox, CoroutinesWorkAndDoNotNestForEver) {
+  EXPECT_EQ(value_of("table.concat(t, ' ')", R"(
+t = {}
+local next_one = coroutine.wrap(function(a) for i = a, a + 2 do coroutine.yield(i) end end)
+for i = 1, 3 do t[i] = next_one(5) end)"),
+            "5 6 7");
+  EXPECT_EQ(value_of("coroutine.resume(coroutine.create(function(...) return select('#', ...), ... end), 1, nil)"),
+            "true\t2\t1\tnil");
+  EXPECT_NE(error_of("local function f() coroutine.wrap(f)() end f()").find("100 deep: that is too deep"),
+            std::string::npos);
+  EXPECT_EQ(value_of("coroutine.wrap(function() return pcall(error, 'x', 0) end)()"), "false\tx");
+}
+
+TEST(Sandbox, RequireFindsModulesOfTheShow) {
+  Stage stage;
+  stage.write("scripts/lib/steps.lua", "local steps = { count = 3 }\nprint('loaded', ...)\nreturn steps");
+  stage.write("scripts/lib/deep/er.lua", "shared = (shared_before or 0) + 1 return require('steps').count");
+  stage.write("scripts/lib/nothing.lua", "local x = 1");
+  ASSERT_EQ(stage.run(R"(
+shared_before = 5
+local steps = require("steps")
+print(steps.count, require("steps") == steps, require("deep.er"), shared, require("nothing"))
+)"),
+            "");
+  EXPECT_EQ(stage.host.printed, (Lines{"loaded\tsteps", "3\ttrue\t3\t6\ttrue"}));
+}
+
+TEST(Sandbox, RequireRefuses) {
+  Stage stage;
+  stage.write("scripts/lib/a.lua", "return require('b')");
+  stage.write("scripts/lib/b.lua", "return require('a')");
+  stage.write("secret.lua", "print('secret')");
+  std::filesystem::create_symlink(stage.folder / "secret.lua", stage.folder / "scripts/lib/link.lua");
+  const std::string fault = stage.run("require('a')");
+  EXPECT_NE(fault.find("require goes in a circle: a -> b -> a"), std::string::npos) << fault;
+  for (const char* name : {"../secret", "/etc/passwd", "a..b", ".a", "a.", "", "a/b", "a b"}) {
+    EXPECT_NE(error_of("require('" + std::string(name) + "')").find("require takes a name such as"), std::string::npos)
+        << name;
+  }
+  Stage linked;
+  linked.write("secret.lua", "print('secret')");
+  std::filesystem::create_symlink(linked.folder / "secret.lua", linked.folder / "scripts/lib/link.lua");
+  EXPECT_NE(linked.run("require('link')").find("leads out of"), std::string::npos);
+  EXPECT_TRUE(linked.host.printed.empty());
+  Stage wrong;
+  wrong.write("scripts/lib/wrong.lua", "local wrong_table = {}\nlocal y = wrong_table.z.w\n");
+  EXPECT_EQ(first_line(wrong.run("require('wrong')")),
+            "scripts/lib/wrong.lua:2: attempt to index field 'z' (a nil value)");
+  Stage broken;
+  broken.write("scripts/lib/broken.lua", "local = 1");
+  EXPECT_EQ(first_line(broken.run("require('broken')")).substr(0, 26), "scripts/lib/broken.lua:1: ");
+}
+
+TEST(Sandbox, PrintAndWarn) {
+  Stage stage;
+  ASSERT_EQ(stage.run("print(1, 'two', nil, true) print() warn('careful', 3)"), "");
+  EXPECT_EQ(stage.host.printed, (Lines{"1\ttwo\tnil\ttrue", ""}));
+  EXPECT_EQ(stage.logged(), Lines{"careful\t3"});
+}
+
+}  // namespace
+}  // namespace limber
