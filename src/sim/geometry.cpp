@@ -9,7 +9,7 @@ namespace limber {
 
 namespace {
 
-constexpr btScalar kHullMargin = 0.001f;  // hulls grow by it; Bullet's 4 cm would show
+constexpr btScalar kMargin = 0.001f;  // hulls and cones grow by it; Bullet's 4 cm would show
 
 bool is_identity(const Pose& pose) {
   return glm::length(pose.position) < 1e-9 && std::abs(std::abs(pose.rotation.w) - 1) < 1e-12;
@@ -18,7 +18,7 @@ bool is_identity(const Pose& pose) {
 std::shared_ptr<btCollisionShape> hull_shape(const MeshModel& mesh, const Pose& at) {
   auto hull = std::make_shared<btConvexHullShape>();
   for (const Vec3& v : mesh.hull) hull->addPoint(to_bt(at * v), false);
-  hull->setMargin(kHullMargin);
+  hull->setMargin(kMargin);
   hull->recalcLocalAabb();
   return hull;
 }
@@ -40,7 +40,7 @@ std::shared_ptr<btCollisionShape> primitive(const ShapeModel& m) {
       return std::make_shared<btCapsuleShapeZ>(radius, height);
     case ShapeKind::cone: {
       auto cone = std::make_shared<btConeShapeZ>(radius, height);
-      cone->setMargin(std::min({cone->getMargin(), radius / 10, height / 10}));
+      cone->setMargin(std::min({kMargin, radius / 10, height / 10}));
       return cone;
     }
     default:

@@ -66,7 +66,10 @@ void JointConstraint::take_impulses(const btSolverConstraint* rows, int count) {
   for (int r = 0; r < count && r < row_count_; ++r) {
     const Row& row = rows_[at(r)];
     const btScalar impulse = rows[r].m_appliedImpulse;
-    if (row.kind == RowKind::repair) repair_impulse_[row.axis] = std::fabs(impulse);
+    // of a repair only what made the axis move: what bore a load is not taken back, or the limit would hold on to it
+    if (row.kind == RowKind::repair) {
+      repair_impulse_[row.axis] = std::min(std::fabs(impulse), std::fabs(row.velocity) * rows[r].m_jacDiagABInv);
+    }
     if (row.kind == RowKind::motor || row.kind == RowKind::lock) last_impulse_[row.axis] = impulse;
     if (row.kind != RowKind::motor) continue;
     motor_impulse_[row.axis] = impulse;
@@ -77,6 +80,7 @@ void JointConstraint::take_impulses(const btSolverConstraint* rows, int count) {
 }
 
 void JointConstraint::plan_rows() {
+  rows_.clear();
   row_count_ = 0;
   stiffness_applied_.fill(0);
   // what may give comes first, what must hold comes last: the last row of a sweep is met exactly
@@ -112,8 +116,8 @@ void JointConstraint::plan_rows() {
 
 void JointConstraint::add_row(int axis, btScalar velocity, btScalar soft, btScalar lower, btScalar upper,
                               RowKind kind) {
-  if (row_count_ == kMaxRows) return;
-  rows_[at(row_count_++)] = {velocity, soft, lower, upper, static_cast<std::uint8_t>(axis), kind};
+  rows_.push_back({velocity, soft, lower, upper, static_cast<std::uint8_t>(axis), kind});
+  row_count_++;
 }
 
 void JointConstraint::plan_lock(int axis) {

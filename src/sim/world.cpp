@@ -238,6 +238,10 @@ void World::heal(Body& body, const Part& part, const char* what) {
     // the force that did it would do it again in this tick's next internal step
     each.rigid().clearForces();
     each.rigid().applyGravity();
+    // and contacts start from the impulses that held them before
+    if (each.rigid().isInWorld()) {
+      bullet_->getPairCache()->cleanProxyFromPairs(each.rigid().getBroadphaseHandle(), bullet_->getDispatcher());
+    }
     each.rigid().forceActivationState(DISABLE_DEACTIVATION);
   }
   for (const auto& joint : body.joints_) joint->read_anew();

@@ -59,8 +59,9 @@ void friction() {
     s.ticks(30);
     const double before = box.linear_velocity().x;
     s.ticks(60);
-    const double expected = std::max(0.0, kG * (std::sin(slope) - mu * std::cos(slope)));
-    EXPECT_NEAR(box.linear_velocity().x - before, expected, 0.01 * kG * std::sin(slope)) << mu;  // tan 0.4 = 0.4228
+    const double expected = std::max(0.0, kG * (std::sin(slope) - mu * std::cos(slope)));  // tan 0.4 = 0.4228
+    // within 3 % of the friction: a box's four contact points take turns
+    EXPECT_NEAR(box.linear_velocity().x - before, expected, 0.03 * mu * kG * std::cos(slope) + 1e-3) << mu;
   }
 }
 

@@ -1,0 +1,206 @@
+// Health: what no number can describe is put back once, switched off the second time, and reset brings it back.
+#include <gtest/gtest.h>
+
+#include <limits>
+
+#include "sim/arm.h"
+#include "sim/stage.h"
+
+namespace limber {
+namespace {
+
+using namespace test;
+
+bool all_finite(const Stage& s) {
+  for (const double v : s.store.live()) {
+    if (!std::isfinite(v)) return false;
+  }
+  return true;
+}
+
+std::string last_line() { return log_since(0).back().text; }
+
+TEST(Health, RestoresThenSwitchesOffThenResetBringsBack) {
+  Stage s;
+  Part& ball = s.lone(sphere_model(0.1), 1, {{1, 2, 3}, quat_identity()});
+  Part& other = s.lone(sphere_model(0.1), 1, {{5, 0, 0}, quat_identity()});
+  s.set(other.id(), "linear_velocity", {0, 1, 0});
+  s.ticks(5);
+  s.set(ball.id(), "linear_velocity", {600, 0, 0});
+  s.ticks(1);
+  EXPECT_EQ(last_line(), "body '" + ball.body().name() + "': part '" + ball.name() +
+                             "' is faster than 500 m/s; the body is put back to its last good pose, at rest");
+  EXPECT_EQ(s.world.health_events(), 1u);
+  EXPECT_EQ(ball.pose().position, Vec3(1, 2, 3));
+  EXPECT_EQ(ball.linear_velocity(), Vec3(0));
+  EXPECT_TRUE(ball.body().enabled());
+
+  s.set(ball.id(), "angular_velocity", {0, 1200, 0});
+  s.ticks(1);
+  EXPECT_EQ(
+      last_line(),
+      "body '" + ball.body().name() + "': part '" + ball.name() +
+          "' turns faster than 1000 rad/s again; the body is switched off (reset or enabled = true brings it back)");
+  EXPECT_EQ(s.world.health_events(), 2u);
+  EXPECT_FALSE(ball.body().enabled());
+  s.ticks(3);
+  EXPECT_EQ(s.world.bullet().getNumCollisionObjects(), 1);
+  // the others go on
+  EXPECT_NEAR(other.pose().position.y, 10.0 / 60, 1e-5);
+
+  ball.body().reset();
+  s.set(ball.id(), "linear_velocity", {1, 0, 0});
+  s.ticks(6);
+  EXPECT_TRUE(ball.body().enabled());
+  EXPECT_NEAR(ball.pose().position.x, 1.1, 1e-5);
+  EXPECT_EQ(s.world.health_events(), 2u);
+}
+
+TEST(Health, EachBoundIsWhereItIsSaidToBe) {
+  const struct {
+    const char* row;
+    double good, bad;
+  } cases[] = {{"linear_velocity", 499, 501}, {"angular_velocity", 999, 1001}, {"position", 9990, 10001}};
+  for (const auto& c : cases) {
+    for (const double v : {c.good, c.bad}) {
+      Stage s;
+      Part& ball = s.lone(sphere_model(0.1), 1);
+      s.ticks(1);
+      s.set(ball.id(), c.row, {0, v, 0});
+      s.ticks(1);
+      EXPECT_EQ(s.world.health_events(), v == c.bad ? 1u : 0u) << c.row << " " << v;
+    }
+  }
+}
+
+TEST(Health, EnablingByHandBringsABodyBackToo) {
+  Stage s;
+  Part& ball = s.lone(sphere_model(0.1), 1);
+  for (int i = 0; i < 2; i++) {
+    s.ticks(1);
+    s.set(ball.id(), "linear_velocity", {0, 0, 600});
+    s.ticks(1);
+  }
+  EXPECT_FALSE(ball.body().enabled());
+  s.set(ball.body().id(), "enabled", {1});
+  s.set(ball.id(), "linear_velocity", {0, 0, 6});
+  s.ticks(10);
+  EXPECT_NEAR(ball.pose().position.z, 1, 1e-4);
+}
+
+TEST(Health, HugeForcesAndTorquesAreSurvived) {
+  for (const double amount : {1e12, 1e30, 1e300}) {
+    for (const bool torque : {false, true}) {
+      Stage s;
+      s.gravity({0, 0, -9.81});
+      s.floor();
+      Body& arm = make_arm(s, "arm", {4, {0, 0, 0.5}, false});
+      Body& near = make_arm(s, "near", {4, {0.08, 0, 0.5}, false});  // touching
+      Body& far = make_arm(s, "far", {4, {9, 0, 0}, true});
+      s.ticks(3);
+      const double before = far.joints()[2]->value();
+      torque ? arm.parts()[2]->apply_torque({amount, -amount, 1}) : arm.parts()[2]->apply_force({amount, -amount, 1});
+      s.ticks(1);
+      EXPECT_GE(s.world.health_events(), 1u);
+      EXPECT_TRUE(all_finite(s)) << amount;
+      s.ticks(30);
+      EXPECT_TRUE(all_finite(s)) << amount;
+      EXPECT_NEAR(far.joints()[2]->value(), before, 1e-3);
+      EXPECT_TRUE(far.enabled());
+      // one blow restores a body; it does not switch it off
+      EXPECT_TRUE(arm.enabled()) << amount;
+      EXPECT_TRUE(near.enabled()) << amount;
+    }
+  }
+}
+
+TEST(Health, AForceThatStaysSwitchesTheBodyOff) {
+  Stage s;
+  Body& arm = make_arm(s, "arm", {4});
+  for (int i = 0; i < 5; i++) {
+    arm.parts()[3]->apply_force({1e30, 0, 0});
+    s.ticks(1);
+  }
+  EXPECT_FALSE(arm.enabled());
+  EXPECT_EQ(s.world.health_events(), 2u);
+  EXPECT_TRUE(all_finite(s));
+  arm.reset();
+  s.ticks(60);
+  EXPECT_TRUE(arm.enabled());
+  for (const auto& joint : arm.joints()) EXPECT_NEAR(joint->value(), 0, 1e-3);
+}
+
+TEST(Health, ABodyThatBreaksInItsFirstTickGoesBackToItsStart) {
+  Stage s;
+  Part& ball = s.lone(sphere_model(0.1), 1, {{0, 0, 7}, quat_identity()});
+  ball.apply_force({1e20, 0, 0});
+  s.ticks(1);
+  EXPECT_EQ(ball.pose().position, Vec3(0, 0, 7));
+  EXPECT_TRUE(all_finite(s));
+}
+
+TEST(Health, BodiesDeepInEachOtherComeApart) {
+  Stage s;
+  s.gravity({0, 0, -9.81});
+  s.floor();
+  for (int i = 0; i < 8; i++) {
+    s.lone(box_model({0.4, 0.3, 0.2}), 1, {{0, 0, 0.5}, quat_identity()});  // all in one place
+    s.lone(sphere_model(0.2), 1, {{0, 0, 0.5}, quat_identity()});
+  }
+  Body& arm = make_arm(s, "arm", {4, {0, 0, 0.3}, false});
+  Body& twin = **s.world.copy_body(arm, "twin");
+  s.ticks(240);
+  EXPECT_TRUE(all_finite(s));
+  EXPECT_LT(s.world.health_events(), 2u);
+  for (const auto& body : s.world.bodies()) {
+    if (body->root()->is_static()) continue;
+    EXPECT_LT(glm::length(body->pose().position), 20);
+    EXPECT_GT(body->pose().position.z, -0.2);
+  }
+  EXPECT_GT(glm::length(arm.pose().position - twin.pose().position), 0.01);
+}
+
+TEST(Health, NoNumberComesThroughTheDoor) {
+  Stage s;
+  Body& arm = make_arm(s, "arm", {2});
+  s.ticks(1);
+  const std::uint64_t hash = s.world.state_hash();
+  for (const double bad : {std::nan(""), std::numeric_limits<double>::infinity()}) {
+    const std::vector<double> v = {bad, 0, 0};
+    const std::vector<double> q = {0, bad, 0, 1};
+    for (const char* row : {"position", "linear_velocity", "angular_velocity"}) {
+      EXPECT_FALSE(s.store.set(arm.id(), row, v)) << row;
+      EXPECT_FALSE(s.store.set(arm.parts()[1]->id(), row, v)) << row;
+    }
+    EXPECT_FALSE(s.store.set(arm.id(), "rotation", q));
+    EXPECT_FALSE(s.store.set(arm.parts()[1]->id(), "rotation", q));
+    EXPECT_FALSE(s.store.set(arm.motors()[0]->id(), "target", {&bad, 1}));
+  }
+  s.world.settle();
+  EXPECT_EQ(s.world.state_hash(), hash);
+}
+
+TEST(Health, ExtremeRowsDoNotEndTheRun) {
+  Stage s;
+  s.gravity({0, 0, -9.81});
+  s.floor();
+  Body& arm = make_arm(s, "arm", {5, {0, 0, 0.5}, true});
+  // every row of every node to each end of its range, one after the other
+  for (const bool high : {false, true}) {
+    std::vector<NodeId> nodes;
+    s.store.walk(arm.id(), [&](NodeId id) { nodes.push_back(id); });
+    for (const NodeId id : nodes) {
+      for (const Row& row : s.store.table(id).rows()) {
+        if (!row.writable() || row.type == RowType::quat || row.name == "enabled") continue;
+        (void)s.store.set(id, row, std::vector<double>(row.width, high ? row.max : row.min));
+      }
+      s.ticks(1);
+      ASSERT_TRUE(all_finite(s)) << s.store.path(id);
+    }
+  }
+  s.ticks(10);
+  EXPECT_TRUE(all_finite(s));
+}
+
+}  // namespace
+}  // namespace limber

@@ -1,0 +1,189 @@
+// The world: what the state hash covers, that runs repeat, shapes, and clearing away.
+#include "sim/world.h"
+
+#include <gtest/gtest.h>
+
+#include <bit>
+
+#include "sim/arm.h"
+#include "sim/stage.h"
+
+namespace limber {
+namespace {
+
+using namespace test;
+
+std::uint64_t run_of_arms(int extra_settles) {
+  Stage s;
+  s.gravity({0, 0, -9.81});
+  s.floor();
+  for (int i = 0; i < 4; i++) make_arm(s, "arm" + std::to_string(i), {4, {0.15 * i, 0, 0.3}, i % 2 == 0});
+  for (int tick = 0; tick < 90; tick++) {
+    for (const auto& body : s.world.bodies()) wave(s, *body, s.world.time());
+    for (int i = 0; i < extra_settles; i++) s.world.settle();
+    s.ticks(1);
+  }
+  return s.world.state_hash();
+}
+
+TEST(WorldTest, TwoRunsHaveOneHash) {
+  const std::uint64_t hash = run_of_arms(0);
+  EXPECT_EQ(run_of_arms(0), hash);
+  EXPECT_EQ(run_of_arms(2), hash);  // looking twice changes nothing
+}
+
+double next_bit(double v) { return std::bit_cast<double>(std::bit_cast<std::uint64_t>(v) ^ 1u); }
+btScalar next_bit(btScalar v) { return std::bit_cast<btScalar>(std::bit_cast<std::uint32_t>(v) ^ 1u); }
+
+TEST(WorldTest, ASingleBitOfAnyPoseOrVelocityChangesTheHash) {
+  Stage s;
+  Body& arm = make_arm(s, "arm", {2});
+  s.ticks(10);
+  const std::uint64_t hash = s.world.state_hash();
+  for (const auto& part : arm.parts()) {
+    btRigidBody& r = part->rigid();
+    const btTransform t = r.getWorldTransform();
+    for (int i = 0; i < 3; i++) {
+      btTransform moved = t;
+      moved.getOrigin()[i] = next_bit(t.getOrigin()[i]);
+      r.setWorldTransform(moved);
+      EXPECT_NE(s.world.state_hash(), hash);
+      for (int k = 0; k < 3; k++) {
+        btTransform turned = t;
+        turned.getBasis()[i][k] = next_bit(t.getBasis()[i][k]);
+        r.setWorldTransform(turned);
+        EXPECT_NE(s.world.state_hash(), hash);
+      }
+      r.setWorldTransform(t);
+      if (part->is_static()) continue;
+      const btVector3 v = r.getLinearVelocity();
+      const btVector3 w = r.getAngularVelocity();
+      btVector3 other = v;
+      other[i] = next_bit(v[i]);
+      r.setLinearVelocity(other);
+      EXPECT_NE(s.world.state_hash(), hash);
+      r.setLinearVelocity(v);
+      other = w;
+      other[i] = next_bit(w[i]);
+      r.setAngularVelocity(other);
+      EXPECT_NE(s.world.state_hash(), hash);
+      r.setAngularVelocity(w);
+    }
+  }
+  EXPECT_EQ(s.world.state_hash(), hash);
+}
+
+TEST(WorldTest, ASingleBitOfAnyNumberOfAnyRowChangesTheHash) {
+  Stage s;
+  Body& arm = make_arm(s, "arm", {2});
+  s.ticks(10);
+  const std::uint64_t hash = s.world.state_hash();
+  std::vector<NodeId> nodes = {s.world.id()};
+  s.store.walk(arm.id(), [&](NodeId id) { nodes.push_back(id); });
+  int numbers = 0;
+  for (const NodeId id : nodes) {
+    for (const Row& row : s.store.table(id).rows()) {
+      // readouts follow from the rest, `paused` and `speed` are the clock's
+      const bool counts = row.stored() && row.writable() && row.name != "paused" && row.name != "speed";
+      if (!counts || row.name == "seed" || row.name == "enabled") continue;
+      for (std::uint32_t i = 0; i < row.width; i++) {
+        double& v = s.store.tell(id, row)[i];
+        const double before = v;
+        v = next_bit(v);
+        EXPECT_NE(s.world.state_hash(), hash) << s.store.path(id) << "/" << row.name;
+        v = before;
+        numbers++;
+      }
+    }
+  }
+  EXPECT_GT(numbers, 200);
+  EXPECT_EQ(s.world.state_hash(), hash);
+  s.set(s.world.id(), "seed", {2});
+  EXPECT_NE(s.world.state_hash(), hash);
+  s.set(s.world.id(), "seed", {1});
+  s.set(arm.id(), "enabled", {0});
+  EXPECT_NE(s.world.state_hash(), hash);
+}
+
+TEST(WorldTest, NamesAndOrderOfBodiesAreInTheHash) {
+  const auto hash = [](const std::vector<std::string>& names) {
+    Stage s;
+    for (const std::string& name : names) s.part(s.body(name), sphere_model(0.1), 1);
+    s.world.settle();
+    return s.world.state_hash();
+  };
+  EXPECT_EQ(hash({"a", "b"}), hash({"a", "b"}));
+  EXPECT_NE(hash({"a", "b"}), hash({"b", "a"}));
+  EXPECT_NE(hash({"a", "b"}), hash({"a", "c"}));
+  EXPECT_NE(hash({"a", "b"}), hash({"a"}));
+}
+
+TEST(WorldTest, ClearingLeavesAnEmptyWorldThatCanBeFilledAgain) {
+  Stage s;
+  const std::uint64_t empty = [&] {
+    s.world.clear();
+    return s.world.state_hash();
+  }();
+  for (int i = 0; i < 3; i++) {
+    s.gravity({1, 2, 3});
+    s.substeps(9);
+    s.floor();
+    make_arm(s, "arm");
+    s.ticks(5);
+    s.world.clear();
+    s.world.restart_time();
+    EXPECT_TRUE(s.world.bodies().empty());
+    EXPECT_TRUE(s.world.shapes().empty());
+    EXPECT_EQ(s.world.bullet().getNumCollisionObjects(), 0);
+    EXPECT_EQ(s.world.state_hash(), empty);
+    EXPECT_EQ(s.vec(s.world.id(), "gravity"), Vec3(0, 0, -9.81));
+    EXPECT_EQ(s.number(s.world.id(), "substeps"), 4);
+  }
+}
+
+TEST(WorldTest, ResetIsAskedForAndTakenOnce) {
+  Stage s;
+  EXPECT_FALSE(s.world.take_reset_request());
+  ASSERT_TRUE(World::table().at("reset").act(&s.world, {}));
+  EXPECT_TRUE(s.world.take_reset_request());
+  EXPECT_FALSE(s.world.take_reset_request());
+}
+
+TEST(WorldTest, SettlingBringsValuesInWithoutTime) {
+  Stage s;
+  s.gravity({0, 0, -9.81});
+  Body& arm = make_arm(s, "arm", {2});
+  arm.set_pose({{0, 0, 5}, quat_identity()});
+  s.world.settle();
+  EXPECT_EQ(s.world.time(), 0);
+  EXPECT_EQ(s.world.tick(), 0u);
+  EXPECT_NEAR(s.vec(arm.joints()[1]->id(), "position").z, 5 + 0.5 - 0.125, 1e-6);
+  EXPECT_EQ(arm.parts()[2]->linear_velocity(), Vec3(0));
+}
+
+TEST(WorldTest, ReadoutsOfAJointAreRightHandedAndInTheWorld) {
+  Stage s;
+  Body& robot = s.body("robot");
+  Part& base = s.part(robot, sphere_model(0.05), 0, {{1, 0, 0}, quat_identity()});
+  Part& arm = s.part(robot, box_model({0.4, 0.1, 0.1}), 1, {{1.3, 0, 0}, quat_identity()});
+  Joint& joint = *robot.add_joint("joint", base, arm, JointType::revolute, {1.1, 0, 0}, {0, 0, 1}).value();
+  const Pose pivot{{1.1, 0, 0}, quat_axis({0, 0, 1}, 0.6)};
+  arm.set_pose(pivot * Pose{{0.2, 0, 0}, quat_identity()});
+  s.set(arm.id(), "angular_velocity", {0, 0, 2});
+  const Vec3 speed = glm::cross(Vec3(0, 0, 2), arm.pose().position - pivot.position);
+  s.set(arm.id(), "linear_velocity", {speed.x, speed.y, speed.z});
+  s.world.settle();
+  EXPECT_NEAR(s.number(joint.id(), "value"), 0.6, 1e-6);
+  EXPECT_NEAR(s.number(joint.id(), "speed"), 2, 1e-5);
+  EXPECT_NEAR(s.vec(joint.id(), "angles").z, 0.6, 1e-6);
+  EXPECT_NEAR(s.vec(joint.id(), "relrot").z, 0.6, 1e-6);
+  EXPECT_LT(glm::length(s.vec(joint.id(), "offsets")), 1e-6);
+  EXPECT_LT(glm::length(s.vec(joint.id(), "position") - Vec3(1.1, 0, 0)), 1e-6);
+  EXPECT_LT(glm::length(s.vec(joint.id(), "axis") - Vec3(0, 0, 1)), 1e-6);
+  const std::vector<double> q = s.get(joint.id(), "rotation");
+  EXPECT_NEAR(q[2], std::sin(0.3), 1e-6);
+  EXPECT_NEAR(q[3], std::cos(0.3), 1e-6);
+}
+
+}  // namespace
+}  // namespace limber
