@@ -81,6 +81,23 @@ TEST(MeshLoad, ScaleAndMirrorKeepTheOutsideOutside) {
   }
 }
 
+TEST(MeshLoad, MirroredOpenMeshesLookTheOtherWay) {
+  // an open sheet has no inside to tell the sides apart by: only the winding says which way it looks
+  test::Solid sheet;
+  sheet.vertices = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
+  sheet.triangles = {0, 1, 2};
+  const auto looks = [](const MeshModel& m) {
+    const Vec3& a = m.vertices[m.triangles[0]];
+    return normalized(glm::cross(m.vertices[m.triangles[1]] - a, m.vertices[m.triangles[2]] - a));
+  };
+  const std::string node = "<scale>1 1 -1</scale>";
+  EXPECT_EQ(looks(load(test::binary_stl(sheet), MeshFormat::stl)), Vec3(0, 0, 1));
+  EXPECT_EQ(looks(load(test::binary_stl(sheet), MeshFormat::stl, {1, 1, -1})), Vec3(0, 0, -1));
+  EXPECT_EQ(looks(load(test::dae(sheet, 1, "Z_UP", ""), MeshFormat::dae)), Vec3(0, 0, 1));
+  EXPECT_EQ(looks(load(test::dae(sheet, 1, "Z_UP", node), MeshFormat::dae)), Vec3(0, 0, -1));
+  EXPECT_EQ(looks(load(test::dae(sheet, 1, "Z_UP", node), MeshFormat::dae, {1, 1, -1})), Vec3(0, 0, 1));
+}
+
 TEST(MeshLoad, InsideOutMeshesAreTurned) {
   test::Solid box = test::box({1, 2, 3});
   for (std::size_t i = 0; i < box.triangles.size(); i += 3) std::swap(box.triangles[i], box.triangles[i + 1]);
