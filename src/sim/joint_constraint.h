@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cstdint>
+#include <vector>
 
 #include "base/vec.h"
 #include "sim/bullet.h"
@@ -133,7 +134,7 @@ class JointConstraint : public btTypedConstraint {
     std::uint8_t axis;
     RowKind kind;
   };
-  static constexpr int kMaxRows = 30;  // per axis: motor, damping, friction, two limits
+  static constexpr std::size_t kUsualRows = 10;  // five locks; motor, damping, friction, two limits
 
   struct Jacobian {
     btVector3 linear;  // on the child; the parent's is the negative
@@ -191,7 +192,7 @@ class JointConstraint : public btTypedConstraint {
   int row_count_ = 0;
   int locked_rows_ = 0;
   bool bounded_row_ = false;
-  std::array<Row, kMaxRows> rows_;
+  std::vector<Row> rows_;
 };
 
 }  // namespace limber
