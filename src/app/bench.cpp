@@ -31,6 +31,7 @@ Json run_arm_quality(const BenchOptions& options) {
   ArmScene scene = bench_arm_scene(1);
   scene.step = 1.0 / 60;
   scene.substeps = 1;
+  scene.hanging = true;
   return bench_arms(scene, 60, options.ticks > 0 ? options.ticks : 360, options.compare_raw);
 }
 
@@ -91,7 +92,8 @@ const std::vector<BenchScene>& bench_scenes() {
       {"arms-16", "16 such arms", &run_arms<16, 240>},
       {"arms-100", "100 such arms", &run_arms<100, 80>},
       {"arms-1000", "1000 such arms", &run_arms<1000, 16>},
-      {"arm-quality", "one arm at one internal step of 1/60 s: how far joints part and servos miss", &run_arm_quality},
+      {"arm-quality", "one arm hanging, one internal step of 1/60 s: how far joints part and servos miss",
+       &run_arm_quality},
       {"spawn", "load urdf/arm17.urdf and make 1000 copies", &bench_spawn},
       {"osc-in", "messages a second from a socket into rows; a burst of 10 000", &bench_osc_in},
       {"osc-latency", "from message to answer: /ping, and a value in force", &bench_osc_latency},

@@ -4,7 +4,6 @@
 #include <netinet/in.h>
 #include <poll.h>
 #include <sys/socket.h>
-#include <ctime>
 
 #include <array>
 #include <atomic>
@@ -74,7 +73,7 @@ double messages_per_second(BenchArms& arms, const std::vector<Packet>& packets, 
     arms.tick();
     best = std::max(best, messages / (received + arms.engine().times().commands));
   }
-  return rounded(best, 1);
+  return rounded(best, 0);
 }
 
 // a socket of a client on this machine
@@ -125,13 +124,7 @@ Json burst(BenchArms& arms, Network& network, const std::vector<Packet>& packets
   sender.join();
   arms.tick();
   const auto whole = static_cast<double>(arrived() - before);
-  return {{"sent", packets.size()}, {"arrived", whole}, {"messages_per_second", rounded(whole / (last - start), 1)}};
-}
-
-double thread_seconds() {
-  timespec now{};
-  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
-  return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
+  return {{"sent", packets.size()}, {"arrived", whole}, {"messages_per_second", rounded(whole / (last - start), 0)}};
 }
 
 }  // namespace
@@ -190,7 +183,7 @@ nlohmann::ordered_json bench_osc_latency(const BenchOptions&) {
   Json figures = {{"lost", lost}};
   if (!pings.empty()) figures["ping_us"] = pings.microseconds();
   if (!values.empty()) figures["value_and_answer_us"] = values.microseconds();
-  figures["tick_us"] = rounded(1e6 / 60, 0.1);
+  figures["tick_us"] = rounded(1e6 / 60, 1);
   return figures;
 }
 
@@ -236,7 +229,7 @@ nlohmann::ordered_json bench_osc_out(const BenchOptions&) {
           {"bytes", frame.bytes().size()},
           {"fill_us", fill.microseconds()},
           {"send_us", send.microseconds()},
-          {"percent_of_a_tick_at_60_hz", rounded(100 * 60 * (fill.at(0.5) + send.at(0.5)), 0.01)}};
+          {"percent_of_a_tick_at_60_hz", rounded(100 * 60 * (fill.at(0.5) + send.at(0.5)), 2)}};
 }
 
 }  // namespace limber

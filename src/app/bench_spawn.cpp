@@ -37,7 +37,7 @@ nlohmann::ordered_json bench_spawn(const BenchOptions&) {
   const double copied = bench_seconds();
   engine.tick();
   const double ticked = bench_seconds();
-  const auto milliseconds = [](double seconds) { return rounded(seconds * 1e3, 0.01); };
+  const auto milliseconds = [](double seconds) { return rounded(seconds * 1e3, 2); };
   return {{"copies", kCopies},
           {"parts", (kCopies + 1) * (*first)->parts().size()},
           {"load_ms", milliseconds(loaded - start)},

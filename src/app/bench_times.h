@@ -5,6 +5,7 @@
 #include <chrono>
 #include <cmath>
 #include <cstddef>
+#include <ctime>
 #include <vector>
 
 #include <malloc.h>
@@ -22,8 +23,18 @@ inline double heap_bytes() {
   return static_cast<double>(info.uordblks) + static_cast<double>(info.hblkhd);
 }
 
-/// A figure with as many digits as it deserves.
-inline double rounded(double value, double step) { return std::round(value / step) * step; }
+/// Seconds that this thread has had a processor: other programs' turns do not count.
+inline double thread_seconds() {
+  timespec now{};
+  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
+  return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
+}
+
+/// A figure with so many decimals, as many as it deserves.
+inline double rounded(double value, int decimals) {
+  const double scale = std::pow(10.0, decimals);
+  return std::round(value * scale) / scale;
+}
 
 /// Samples of one thing, seconds.
 class Samples {
@@ -41,7 +52,7 @@ class Samples {
   nlohmann::ordered_json microseconds() const {
     return {{"min", in_microseconds(at(0))}, {"median", in_microseconds(at(0.5))}, {"p99", in_microseconds(at(0.99))}};
   }
-  static double in_microseconds(double seconds) { return rounded(seconds * 1e6, 0.01); }
+  static double in_microseconds(double seconds) { return rounded(seconds * 1e6, 2); }
 
  private:
   std::vector<double> all_;

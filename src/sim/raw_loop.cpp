@@ -11,12 +11,11 @@ namespace {
 constexpr btScalar kStockMargin = btScalar(0.05);  // Bullet's own; the variable behind it is shared by all worlds
 }
 
-Vec3 ArmScene::place(int arm) const {
+Vec3 ArmScene::center(int arm, int part) const {
   const int side = static_cast<int>(std::ceil(std::sqrt(arms)));
-  return {spacing * (arm % side), spacing * (arm / side), 0};
+  const double along = size.z * (part + 1.5);
+  return {spacing * (arm % side), spacing * (arm / side), hanging ? size.z * (parts + 3) - along : along};
 }
-
-Vec3 ArmScene::center(int arm, int part) const { return place(arm) + Vec3(0, 0, size.z * (part + 1.5)); }
 
 double ArmScene::target(int joint, double time) {
   return std::min(1.0, 2 * time) * 0.3 * std::sin(kPi * time + 0.4 * joint);
@@ -60,12 +59,12 @@ void RawLoop::add_floor() {
 }
 
 void RawLoop::add_arm(int arm) {
-  const btVector3 half(0, 0, to_scalar(scene_.size.z / 2));
+  const btVector3 to_joint = to_bt(scene_.to_joint());
   btRigidBody* below = &add_box(scene_.center(arm, -1), 0);
   for (int part = 0; part < scene_.parts; part++) {
     btRigidBody* above = &add_box(scene_.center(arm, part), scene_.mass);
-    const btTransform in_below(btQuaternion::getIdentity(), half);
-    const btTransform in_above(btQuaternion::getIdentity(), -half);
+    const btTransform in_below(btQuaternion::getIdentity(), -to_joint);
+    const btTransform in_above(btQuaternion::getIdentity(), to_joint);
     auto joint = std::make_unique<btGeneric6DofSpring2Constraint>(*below, *above, in_below, in_above);
     for (int axis = 0; axis < 6; axis++) joint->setLimit(axis, 0, 0);
     const int own = 3 + ArmScene::axis(part);

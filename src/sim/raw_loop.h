@@ -23,11 +23,13 @@ struct ArmScene {
   double step = 1.0 / 240;  ///< Internal step, s.
   int substeps = 4;         ///< Internal steps of a tick.
 
-  /// Where an arm stands on the floor.
-  Vec3 place(int arm) const;
-  /// A part's centre when the arm is upright; part -1 is the base, which does not move.
+  bool hanging = false;  ///< From bases above the floor, instead of standing on it.
+
+  /// A part's centre when the arm is straight; part -1 is the base, which does not move.
   Vec3 center(int arm, int part) const;
-  /// A joint turns about x or y in turn: 0 or 1. It lies below the part of its number.
+  /// From a part's centre to the joint that it hangs on.
+  Vec3 to_joint() const { return {0, 0, (hanging ? 0.5 : -0.5) * size.z}; }
+  /// A joint turns about x or y in turn: 0 or 1. It bears the part of its number.
   static int axis(int joint) { return joint & 1; }
   /// Where the servo of a joint goes at a time: ±0.3 rad at 0.5 Hz, a wave along the arm.
   static double target(int joint, double time);

@@ -1,0 +1,129 @@
+// The bench: it plays what it says, prints what it promises, and its two sides are the same arms.
+#include "app/bench.h"
+
+#include <gtest/gtest.h>
+
+#include <string>
+
+#include "app/bench_arms.h"
+
+namespace limber {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json figures_of(std::string_view name, const BenchOptions& options) {
+  for (const BenchScene& scene : bench_scenes()) {
+    if (scene.name == name) return scene.run(options);
+  }
+  return {};
+}
+
+TEST(Bench, GivesTheFiguresOfAnArm) {
+  BenchOptions options;
+  options.ticks = 6;
+  options.compare_raw = true;
+  const Json figures = figures_of("arms-1", options);
+  EXPECT_EQ(figures["parts"], 18);  // 17 and the base
+  EXPECT_EQ(figures["ticks"], 6);
+  EXPECT_EQ(figures["settings"]["solver_iterations"], 10);
+  for (const Json& side : {figures, figures["raw"]}) {
+    EXPECT_GT(side["tick_us"]["min"], 0);
+    EXPECT_LE(side["tick_us"]["min"], side["tick_us"]["median"]);
+    EXPECT_LE(side["tick_us"]["median"], side["tick_us"]["p99"]);
+    EXPECT_GE(side["joint_gap_mm"], 0);
+    EXPECT_LT(side["joint_gap_mm"], 100) << "an arm fell apart";
+  }
+  for (const char* phase : {"commands", "scripts", "effects", "physics", "readouts", "snapshot", "collector"}) {
+    EXPECT_GE(figures["phases_us"][phase], 0) << phase;
+  }
+  for (const char* phase : {"broadphase", "narrowphase", "islands", "solver", "motion"}) {
+    EXPECT_GT(figures["bullet_us"][phase], 0) << phase;
+  }
+  EXPECT_GT(figures["ratio"]["min"], 0);
+  EXPECT_GT(figures["ratio"]["median"], 0);
+}
+
+TEST(Bench, TheSameSceneHasTheSameHashWhateverRunsBeside) {
+  BenchOptions options;
+  options.ticks = 5;
+  const Json alone = figures_of("arms-1", options);
+  options.compare_raw = true;
+  const Json beside = figures_of("arms-1", options);
+  options.ticks = 6;
+  const Json longer = figures_of("arms-1", options);
+  EXPECT_EQ(alone["hash"].get<std::string>().size(), 16u);
+  EXPECT_EQ(alone["hash"], beside["hash"]);
+  EXPECT_NE(alone["hash"], longer["hash"]);
+}
+
+TEST(Bench, PrintsJsonForMachines) {
+  testing::internal::CaptureStdout();
+  const int code = bench_command({{"arms-1", "arm-quality"}, false, true, 3});
+  const Json all = Json::parse(testing::internal::GetCapturedStdout());
+  EXPECT_EQ(code, 0);
+  ASSERT_EQ(all["scenes"].size(), 2u);
+  EXPECT_EQ(all["scenes"][0]["scene"], "arms-1");
+  EXPECT_EQ(all["scenes"][1]["scene"], "arm-quality");
+  EXPECT_EQ(all["scenes"][1]["settings"]["substeps"], 1);
+  EXPECT_TRUE(all.contains("commit") && all.contains("cpu"));
+}
+
+TEST(Bench, PrintsLinesForPeople) {
+  testing::internal::CaptureStdout();
+  const int code = bench_command({{"ARMS-1"}, true, false, 3});
+  const std::string text = testing::internal::GetCapturedStdout();
+  EXPECT_EQ(code, 0);
+  for (const char* line : {"arms-1: one arm of 17 parts", "tick us ", "simulated seconds per second", "phases us ",
+                           "joint gap mm", "servo error rad", "hash ", "raw tick us ", "ratio "}) {
+    EXPECT_NE(text.find(line), std::string::npos) << line << " in\n" << text;
+  }
+}
+
+TEST(Bench, AnUnknownSceneIsUsageAndNamesTheNearest) {
+  testing::internal::CaptureStderr();
+  EXPECT_EQ(bench_command({{"arms-10"}, false, false, 1}), 2);
+  const std::string text = testing::internal::GetCapturedStderr();
+  EXPECT_NE(text.find("'arms-10'; did you mean 'arms-1"), std::string::npos) << text;
+}
+
+TEST(Bench, TextOfFigures) {
+  const Json figures = {{"parts", 18}, {"tick_us", {{"min", 1.5}, {"p99", 2}}}, {"raw", {{"tick_us", {{"min", 3}}}}}};
+  EXPECT_EQ(bench_text(figures),
+            "  parts                           18\n"
+            "  tick us                         min 1.5  p99 2\n"
+            "  raw tick us                     min 3\n");
+}
+
+TEST(Bench, EveryMessageOfTheOscSceneFindsItsRow) {
+  const Json figures = figures_of("osc-in", {});
+  EXPECT_EQ(figures["refused"], 0);
+  EXPECT_EQ(figures["burst_on_loopback"]["sent"], 10000);
+  EXPECT_GE(figures["burst_on_loopback"]["arrived"], 2000);
+}
+
+// a single hanging link is what both sides can hold: the servo arrives, the joint stays together
+TEST(Bench, BothSidesAreTheSameArm) {
+  ArmScene scene = bench_arm_scene(1);
+  scene.parts = 1;
+  scene.hanging = true;
+  EXPECT_DOUBLE_EQ(scene.center(0, 0).z + scene.to_joint().z, scene.center(0, -1).z - scene.size.z / 2);
+  BenchArms ours(scene);
+  RawLoop raw(scene);
+  for (double time = 0; time < 0.75; time += 1.0 / 60) {
+    ours.drive(time);
+    raw.drive(time);
+    ours.tick();
+    raw.tick();
+  }
+  // the target moves at most 0.3·π rad/s; stock servos make good a fifth of their error a step: 5/240 s behind, and
+  // the tick's 1/60 s
+  const double behind = 0.3 * kPi * (5.0 / 240 + 1.0 / 60) + 0.002;
+  EXPECT_LT(ours.servo_error(0.75), behind);
+  EXPECT_LT(raw.servo_error(0.75), behind);
+  EXPECT_LT(ours.joint_gap(), 1e-4);
+  EXPECT_LT(raw.joint_gap(), 1e-3);
+}
+
+}  // namespace
+}  // namespace limber
