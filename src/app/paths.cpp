@@ -16,8 +16,9 @@ std::string data_dir() {
   const fs::path program = fs::read_symlink("/proc/self/exe", fault);
   std::vector<fs::path> places;
   if (!fault) {
-    places.push_back(program.parent_path().parent_path());
-    places.push_back(program.parent_path().parent_path() / "share/limber");
+    // a checkout's build folder may lie deeper: build/asan
+    const fs::path above = program.parent_path().parent_path();
+    places = {above, above.parent_path(), above / "share/limber"};
   }
   places.emplace_back(install_data_dir());
   for (const fs::path& place : places) {

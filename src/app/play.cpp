@@ -209,8 +209,8 @@ int finish(const PlayOptions& options, Engine& engine, bool interrupted) {
   return kFine;
 }
 
-int play_scene(const PlayOptions& options, EngineOptions engine_options, const OscOptions& osc) {
-  const sigset_t signals = block_signals();
+int play_scene(const PlayOptions& options, EngineOptions engine_options, const OscOptions& osc,
+               const sigset_t& signals) {
   EngineLink link;
   Engine engine(link, std::move(engine_options));
   Network network(link, osc, live_offsets());
@@ -234,6 +234,7 @@ int play_scene(const PlayOptions& options, EngineOptions engine_options, const O
 }  // namespace
 
 int play_command(const PlayOptions& options) {
+  const sigset_t signals = block_signals();
   fmt::print(stderr, "limber {} ({}): {}\n", version(), commit(), printable(options.scene));
   Result<OscOptions> osc = parse_osc(options);
   if (!osc) return fail(kUsage, osc.error());
@@ -242,7 +243,7 @@ int play_command(const PlayOptions& options) {
   Result<EngineOptions> engine_options = parse_engine(options, scene);
   if (!engine_options) return fail(kUsage, engine_options.error());
   if (scene.empty()) return fail(kInput, no_scene(options.scene, looked));
-  return play_scene(options, std::move(*engine_options), *osc);
+  return play_scene(options, std::move(*engine_options), *osc, signals);
 }
 
 }  // namespace limber

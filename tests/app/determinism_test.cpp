@@ -1,0 +1,29 @@
+// The same scene and seed give the same hash in every new process, however it is played.
+#include "app/determinism.h"
+
+namespace limber::app_test {
+namespace {
+
+TEST(Determinism, HoweverItIsPlayed) {
+  const Folder folder;
+  const std::string scene = folder.file("wild.lua", kWildScene);
+  const std::string first = hash_of(scene, {"--fast"}, {});
+  ASSERT_TRUE(first.starts_with("hash ") && first.ends_with(" tick 200\n")) << first;
+  for (const auto& how : ways_to_play())
+    EXPECT_EQ(hash_of(scene, how, {}), first) << fmt::format("{}", fmt::join(how, " "));
+  for (const auto& before : surroundings())
+    EXPECT_EQ(hash_of(scene, {"--fast"}, before), first) << fmt::format("{}", fmt::join(before, " "));
+}
+
+TEST(Determinism, AnotherSeedAndOneTickMoreAreOtherHashes) {
+  const Folder folder;
+  const std::string scene = folder.file("wild.lua", kWildScene);
+  const auto hash = [](const std::string& line) { return line.substr(0, line.find(" tick")); };
+  const std::string first = hash(hash_of(scene, {"--fast"}, {}));
+  EXPECT_NE(hash(hash_of(scene, {"--fast", "--seed", "2"}, {})), first);
+  EXPECT_EQ(hash(hash_of(scene, {"--fast", "--seed", "1"}, {})), first) << "1 is the default";
+  EXPECT_NE(hash(hash_of(scene, {"--fast"}, {}, "201")), first);
+}
+
+}  // namespace
+}  // namespace limber::app_test

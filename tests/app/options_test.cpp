@@ -1,0 +1,65 @@
+// The command line: help that teaches, the version, near words for mistyped ones.
+#include "app/program.h"
+
+namespace limber::app_test {
+namespace {
+
+TEST(Options, HelpTeaches) {
+  const Ran ran = run({"--help"});
+  EXPECT_EQ(ran.code, 0);
+  EXPECT_EQ(ran.err, "");
+  for (const char* taught :
+       {"scripts/arms.lua", "oscsend", "--fast --duration 10 --hash", "play", "inspect", "describe", "bench", "doctor",
+        "Exit codes: 0 fine; 1 the input is at fault; 2 wrong usage; 3"}) {
+    EXPECT_NE(ran.out.find(taught), std::string::npos) << taught;
+  }
+}
+
+TEST(Options, EachCommandHasHelp) {
+  for (const char* command : {"play", "inspect", "describe", "bench", "doctor"}) {
+    const Ran ran = run({command, "--help"});
+    EXPECT_EQ(ran.code, 0) << command;
+    EXPECT_NE(ran.out.find("--help"), std::string::npos) << command;
+  }
+  const std::string play = run({"play", "--help"}).out;
+  for (const char* option : {"--headless", "--fast", "--duration", "--ticks", "--seed", "--set", "--osc-in",
+                             "--osc-allow", "--osc-out", "--osc-optional", "--package-path", "--strict", "--hash"}) {
+    EXPECT_NE(play.find(option), std::string::npos) << option;
+  }
+}
+
+TEST(Options, Version) {
+  const Ran ran = run({"--version"});
+  EXPECT_EQ(ran.code, 0);
+  EXPECT_TRUE(ran.out.starts_with("limber 0.")) << ran.out;
+}
+
+TEST(Options, PlayIsLeftOut) {
+  const Folder folder;
+  const std::string scene = folder.file("s.lua", "print('played')\n");
+  for (const std::vector<std::string>& args : {std::vector<std::string>{scene, "--fast", "--ticks", "1"},
+                                               {"play", scene, "--fast", "--ticks", "1"},
+                                               {"--fast", "--ticks", "1", scene},
+                                               {"--headless", "--fast", "--ticks", "1", scene}}) {
+    const Ran ran = run(args);
+    EXPECT_EQ(ran.code, 0) << ran.err;
+    EXPECT_EQ(ran.out, "played\n");
+  }
+}
+
+TEST(Options, ASceneIsFoundHereOrInTheProgramsData) {
+  const Folder folder;
+  folder.file("my.lua", "print('here')\n");
+  EXPECT_EQ(run({"my.lua", "--fast", "--ticks", "1"}, folder.path()).out, "here\n");
+  // as it is installed: the program in bin, its data in share/limber
+  folder.file("share/limber/scripts/far.lua", "print('far')\n");
+  folder.file("share/limber/urdf/readme", "");
+  const std::string program = folder.file("bin/limber", "");
+  std::filesystem::copy_file(LIMBER_PROGRAM, program, std::filesystem::copy_options::overwrite_existing);
+  std::filesystem::permissions(program, std::filesystem::perms::owner_all);
+  const Ran ran = Running({program, "scripts/far.lua", "--fast", "--ticks", "1"}, "/").finish();
+  EXPECT_EQ(ran.out, "far\n") << ran.err;
+}
+
+}  // namespace
+}  // namespace limber::app_test

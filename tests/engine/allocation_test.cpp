@@ -1,0 +1,90 @@
+// No allocation of ours goes with a tick: an empty scene, and one that steps, with values coming in.
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <cmath>
+#include <cstdlib>
+#include <new>
+
+#include "engine/show.h"
+
+namespace {
+
+std::atomic<std::size_t> allocations{0};
+
+}  // namespace
+
+// the whole test program allocates through these
+void* operator new(std::size_t size) {
+  allocations.fetch_add(1, std::memory_order_relaxed);
+  if (void* p = std::malloc(size > 0 ? size : 1)) return p;
+  throw std::bad_alloc();
+}
+void* operator new[](std::size_t size) { return operator new(size); }
+void operator delete(void* p) noexcept { std::free(p); }
+void operator delete[](void* p) noexcept { std::free(p); }
+void operator delete(void* p, std::size_t) noexcept { std::free(p); }
+void operator delete[](void* p, std::size_t) noexcept { std::free(p); }
+
+namespace limber::engine_test {
+namespace {
+
+std::size_t during(Show& show, int ticks) {
+  show.ticks(100);  // pools fill, the roster is made
+  const std::size_t before = allocations.load();
+  show.ticks(ticks);
+  return allocations.load() - before;
+}
+
+TEST(EngineAllocation, NoneInAnEmptyWorld) {
+  Show show;
+  EXPECT_EQ(during(show, 200), 0U);
+}
+
+TEST(EngineAllocation, NoneWithBodiesAndHeldSnapshots) {
+  Show show;
+  build_bodies(show.engine.world());
+  // a reader that holds two snapshots at any time, as a stream and a window do
+  std::shared_ptr<const Snapshot> older;
+  std::shared_ptr<const Snapshot> newer;
+  const auto tick = [&] {
+    show.engine.tick();
+    older = std::move(newer);
+    newer = show.link.snapshots.read();
+  };
+  for (int i = 0; i < 100; i++) tick();
+  const std::size_t before = allocations.load();
+  for (int i = 0; i < 200; i++) tick();
+  EXPECT_EQ(allocations.load() - before, 0U);
+}
+
+TEST(EngineAllocation, NoneWithASceneThatSteps) {
+  const SceneFile scene(R"(
+local body = sim:add_body("ball")
+local part = body:add_part("ball", sim:add_sphere_shape("ball", 0.1))
+sim:on_step(function(dt) part:apply_force(vec3(0, 0, 9.81)) end)
+)");
+  Show show(scene.path());
+  EXPECT_EQ(during(show, 200), 0U);
+}
+
+TEST(EngineAllocation, AValueComingInTakesNoneBeyondItsMessage) {
+  Show show;
+  build_bodies(show.engine.world());
+  World& world = show.engine.world();
+  Dispatch dispatch(world);
+  const Message by_name = message("/physics/motor/angularservoposition", "arm", "elbow", 0.5);
+  const Message to_all = message("/physics/part/friction", 0.5);
+  const Message by_path = message("/physics/body/arm/motor/elbow/target", 0.25);
+  const auto send = [&] {
+    for (const Message* m : {&by_name, &to_all, &by_path}) EXPECT_EQ(dispatch.execute(*m).kind, Outcome::Kind::applied);
+    world.step();
+  };
+  for (int i = 0; i < 10; i++) send();
+  const std::size_t before = allocations.load();
+  for (int i = 0; i < 100; i++) send();
+  EXPECT_EQ(allocations.load() - before, 0U);
+}
+
+}  // namespace
+}  // namespace limber::engine_test

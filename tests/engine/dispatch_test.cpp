@@ -1,0 +1,292 @@
+// What messages mean beside the seed's forms: one number for three axes, paths and patterns, refusals, questions.
+#include "engine/dispatch.h"
+
+#include <limits>
+
+#include "engine/rig.h"
+
+namespace limber::engine_test {
+namespace {
+
+using Values = std::vector<double>;
+using Kind = Outcome::Kind;
+
+constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+constexpr double kInf = std::numeric_limits<double>::infinity();
+
+std::string motor(const char* body, const char* joint, const char* row) {
+  return fmt::format("/physics/body/{}/motor/{}/{}", body, joint, row);
+}
+
+TEST(Dispatch, OneNumberMeansTheOwnAxis) {
+  Rig rig;
+  // z is the own axis of a revolute joint: the others keep what they had; the slide has none among the angular ones
+  ASSERT_EQ(rig.send("/physics/motor/angularvelocity", "arm", "elbow", 1, 2, 3).kind, Kind::applied);
+  EXPECT_EQ(rig.send("/physics/motor/angularvelocity", 0.5).kind, Kind::applied);
+  EXPECT_EQ(rig.read(motor("arm", "elbow", "angular_velocity")), (Values{1, 2, 0.5}));
+  EXPECT_EQ(rig.read(motor("1", "shoulder", "angular_velocity")), (Values{0, 0, 0.5}));
+  EXPECT_EQ(rig.read(motor("arm", "slide", "angular_velocity")), (Values{0, 0, 0}));
+  EXPECT_EQ(rig.send("/physics/motor/linearvelocity", "arm", 0.75).kind, Kind::applied);
+  EXPECT_EQ(rig.read(motor("arm", "slide", "linear_velocity")), (Values{0, 0, 0.75}));
+  EXPECT_EQ(rig.read(motor("arm", "elbow", "linear_velocity")), (Values{0, 0, 0}));
+  EXPECT_EQ(rig.send("/physics/joint/angularupperlimit", "elbow", 1.5).kind, Kind::applied);
+  EXPECT_EQ(rig.read("/physics/body/arm/joint/elbow/angular_upper_limit")[2], 1.5);
+  EXPECT_EQ(rig.send("/physics/body/arm/motor/elbow/angular_spring_stiffness", 20).kind, Kind::applied);
+  EXPECT_EQ(rig.read(motor("arm", "elbow", "angular_spring_stiffness")), (Values{0, 0, 20}));
+}
+
+TEST(Dispatch, OneNumberWhereThereIsNoOwnAxisIsRefusedByName) {
+  Rig rig;
+  const std::vector<double> before = rig.everything();
+  const Outcome by_name = rig.send("/physics/motor/angularvelocity", "arm", "slide", 1);
+  EXPECT_EQ(by_name.kind, Kind::refused);
+  EXPECT_EQ(by_name.error, "/physics/body/arm/motor/slide: has no own axis for angular_velocity; give three numbers");
+  EXPECT_EQ(rig.send(motor("arm", "slide", "angular_velocity"), 1).kind, Kind::refused);
+  // a body that has none at all is an answer as well, or the performer would wonder
+  EXPECT_EQ(rig.send("/physics/motor/linearvelocity", "1", 1).kind, Kind::refused);
+  EXPECT_EQ(rig.everything(), before);
+}
+
+TEST(Dispatch, OneBooleanMeansAllAxes) {
+  Rig rig;
+  for (const Arg& on : {arg(true), arg(1), arg(0.5), arg("true"), arg("on"), arg("1")}) {
+    rig.send("/physics/motor/angularspringactive", 0, 0, 0);
+    EXPECT_EQ(rig.send("/physics/motor/angularspringactive", "arm", "slide", on).kind, Kind::applied);
+    EXPECT_EQ(rig.read(motor("arm", "slide", "angular_spring_active")), (Values{1, 1, 1}));
+    EXPECT_EQ(rig.read(motor("arm", "elbow", "angular_spring_active")), (Values{0, 0, 0}));
+  }
+  for (const Arg& off : {arg(false), arg(0), arg(0.49), arg("False"), arg("off")}) {
+    rig.send("/physics/motor/angularspringactive", true);
+    EXPECT_EQ(rig.send("/physics/motor/angularspringactive", off).kind, Kind::applied);
+    EXPECT_EQ(rig.read(motor("1", "shoulder", "angular_spring_active")), (Values{0, 0, 0}));
+  }
+}
+
+TEST(Dispatch, ChoicesByLabelAndByNumber) {
+  Rig rig;
+  EXPECT_EQ(rig.send("/physics/motor/mode", "arm", "elbow", "SPRING").kind, Kind::applied);
+  EXPECT_EQ(rig.read(motor("arm", "elbow", "mode")), (Values{3}));
+  EXPECT_EQ(rig.read(motor("arm", "elbow", "angular_spring_active")), (Values{0, 0, 1}));
+  EXPECT_EQ(rig.send(motor("arm", "elbow", "mode"), 1).kind, Kind::applied);
+  EXPECT_EQ(rig.read(motor("arm", "elbow", "mode")), (Values{1}));
+  const Outcome word = rig.send("/physics/motor/mode", "arm", "elbow", "sprung");
+  EXPECT_EQ(word.kind, Kind::refused);
+  EXPECT_EQ(word.error, "takes one of off, spin, servo, spring, not 'sprung'");
+  EXPECT_EQ(rig.send(motor("arm", "elbow", "mode"), 4).kind, Kind::refused);
+  EXPECT_EQ(rig.read(motor("arm", "elbow", "mode")), (Values{1}));
+}
+
+TEST(Dispatch, ASetThroughAViewCountsAsThePerformersValue) {
+  Rig rig;
+  EXPECT_TRUE(rig.send("/physics/motor/target", 0.5).kept) << "the servo's position, a property, stands behind it";
+  EXPECT_FALSE(rig.send("/physics/body/arm/position", 0, 0, 3).kept) << "a pose belongs to the moment";
+  EXPECT_FALSE(rig.send("/physics/sim/paused", true).kept);
+  EXPECT_TRUE(rig.send("/physics/sim/gravity", 0).kept);
+}
+
+TEST(Dispatch, MassLeavesStaticPartsOut) {
+  Rig rig;
+  EXPECT_EQ(rig.send("/physics/part/mass", 2).kind, Kind::applied);
+  EXPECT_EQ(rig.read("/physics/body/arm/part/base/mass"), (Values{0}));
+  EXPECT_EQ(rig.read("/physics/body/floor/part/floor/mass"), (Values{0}));
+  EXPECT_EQ(rig.read("/physics/body/arm/part/tip/mass"), (Values{2}));
+  for (const Outcome& outcome :
+       {rig.send("/physics/part/mass", "arm", "base", 1), rig.send("/physics/body/arm/part/base/mass", 1),
+        rig.send("/physics/part/mass", "floor", 1), rig.send("/physics/part/mass", "base", 1)}) {
+    EXPECT_EQ(outcome.kind, Kind::refused);
+    EXPECT_NE(outcome.error.find("mass 0"), std::string::npos) << outcome.error;
+  }
+  EXPECT_EQ(rig.read("/physics/body/arm/part/base/mass"), (Values{0}));
+}
+
+TEST(Dispatch, PathsWithPatterns) {
+  struct Case {
+    const char* path;
+    std::vector<std::string> hits;
+  };
+  const Case cases[] = {
+      {"/physics/body/*/part/tip/friction", {"arm/part/tip", "1/part/tip"}},
+      {"/physics/body/arm/part/{upper,lower}/friction", {"arm/part/upper", "arm/part/lower"}},
+      {"/physics/body/a?m/part/[t-u]*/friction", {"arm/part/upper", "arm/part/tip"}},
+      {"/physics/body/[!a]*/part/*/friction", {"1/part/base", "1/part/tip", "floor/part/floor"}},
+      {"//tip/friction", {"arm/part/tip", "1/part/tip"}},
+      {"/physics//part/base/friction", {"arm/part/base", "1/part/base"}},
+      {"/physics/body/arm/part/tip/frictio*", {"arm/part/tip"}},
+      {"/physics/body/arm/part/tip/FRICTION", {"arm/part/tip"}},
+  };
+  for (const Case& c : cases) {
+    Rig rig;
+    EXPECT_EQ(rig.send(c.path, 0.125).kind, Kind::applied) << c.path;
+    int hits = 0;
+    for (const auto& body : rig.world.bodies()) {
+      for (const auto& part : body->parts())
+        hits += rig.read(fmt::format("{}/friction", rig.store.path(part->id())))[0] == 0.125;
+    }
+    EXPECT_EQ(hits, static_cast<int>(c.hits.size())) << c.path;
+    for (const std::string& hit : c.hits)
+      EXPECT_EQ(rig.read("/physics/body/" + hit + "/friction"), (Values{0.125})) << c.path << " " << hit;
+  }
+}
+
+TEST(Dispatch, NamesInPathsAreEscaped) {
+  Rig rig;
+  Body& body = **rig.world.add_body("left arm #1/2");
+  ASSERT_TRUE(body.add_part("50%", *rig.world.find_shape("ball"), 1, {}).ok());
+  EXPECT_EQ(rig.send("/physics/body/left%20arm%20%231%2f2/part/50%25/friction", 0.25).kind, Kind::applied);
+  EXPECT_EQ(rig.send("/physics/part/restitution", "left arm #1/2", "50%", 0.75).kind, Kind::applied);
+  const std::string path = "/physics/body/left%20arm%20%231%2F2/part/50%25";
+  EXPECT_EQ(rig.store.path(body.parts()[0]->id()), path);
+  EXPECT_EQ(rig.read(path + "/friction"), (Values{0.25}));
+  EXPECT_EQ(rig.read(path + "/restitution"), (Values{0.75}));
+}
+
+TEST(Dispatch, APathIsFoundAgainAfterItsThingCameBack) {
+  Rig rig;
+  const std::string path = "/physics/body/arm/part/tip/friction";
+  EXPECT_EQ(rig.send(path, 0.25).kind, Kind::applied);
+  EXPECT_EQ(rig.send("/physics/body/arm/remove").kind, Kind::applied);
+  EXPECT_EQ(rig.world.find_body("arm"), nullptr);
+  EXPECT_EQ(rig.send(path, 0.5).kind, Kind::unknown);
+  Body& again = **rig.world.add_body("arm");
+  ASSERT_TRUE(again.add_part("tip", *rig.world.find_shape("ball"), 1, {}).ok());
+  EXPECT_EQ(rig.send(path, 0.75).kind, Kind::applied);
+  EXPECT_EQ(rig.read(path), (Values{0.75}));
+}
+
+TEST(Dispatch, RefusalsChangeNothingAndSayWhatThereIs) {
+  struct Case {
+    Message message;
+    Kind kind;
+    const char* says;
+  };
+  const Arg nothing;
+  const Case cases[] = {
+      {message("/physics/part/mass", "arn", 1), Kind::refused, "there is no body or part 'arn'; did you mean 'arm'?"},
+      {message("/physics/part/mass", "arm", "tipp", 1), Kind::refused, "no part 'tipp' in 'arm'; did you mean 'tip'?"},
+      {message("/physics/part/mass", "arn", "tip", 1), Kind::refused, "there is no body 'arn'; did you mean 'arm'?"},
+      {message("/physics/motor/bounce", "floor", 1), Kind::refused, "body 'floor' has no motors"},
+      {message("/physics/motor/bounce", "x*", 1), Kind::refused, "no body and no motor matches 'x*'"},
+      {message("/physics/motor/bounce", "arm", "x*", 1), Kind::refused, "no motor matches 'x*' in 'arm'"},
+      {message("/physics/part/mass"), Kind::refused, "takes 1 number, not 0"},
+      {message("/physics/part/mass", "arm"), Kind::refused, "takes 1 number, not 0"},
+      {message("/physics/part/mass", 1, 2, 3, 4), Kind::refused, "takes 1 number, not 4"},
+      {message("/physics/part/mass", 7, 1), Kind::refused, "takes 1 number, not 2"},
+      {message("/physics/part/mass", "a", "b", "c", 1), Kind::refused, "takes a body, a part and 1 number; here are 3"},
+      {message("/physics/part/mass", nothing, 1), Kind::refused, "nothing stands where a name is expected"},
+      {message("/physics/part/mass", "arm", "tip", kNan), Kind::refused, "takes 1 number; nan is none"},
+      {message("/physics/part/mass", kInf), Kind::refused, "takes 1 number; inf is none"},
+      {message("/physics/part/mass", "arm", "tip", "heavy"), Kind::refused, "takes 1 number, not 0"},
+      {message("/physics/joint/angularlowerlimit", "arm", "elbow", 1, 2), Kind::refused, "takes 1 or 3 numbers, not 2"},
+      {message("/physics/joint/angularlowerlimit", 1, kNan, 3), Kind::refused, "nan is none"},
+      {message("/physics/body/arm/part/tip/mass", "x"), Kind::refused, "takes 1 number, not 'x'"},
+      {message("/physics/body/arm/part/tip/mass", nothing), Kind::refused, "not an argument without a value"},
+      {message("/physics/body/arm/part/tip/mass", 1, 2), Kind::refused, "takes 1 number, not 2"},
+      {message("/physics/body/arm/part/tip/center", 1, 2, 3), Kind::refused, "this can be read, not set"},
+      {message("/physics/body/arm/part/tip/rotation", 0, 0, 0, 0), Kind::refused, "0 0 0 0 is none"},
+      {message("/physics/body/arm/part/tip", 1), Kind::refused, "this is a thing, not a value"},
+      {message("/physics/body/arm/part/tip/*", 1), Kind::refused, "takes 3 numbers, not 1"},
+      {message("/physics/body/arm/part/tip/{mass,apply_torque}", 1), Kind::refused, "is an action among values"},
+      {message("/physics/body/q*/part/*/mass", 1), Kind::refused, "this pattern matches nothing that can be set"},
+      {message("/physics/body/arm/part/tip/maas", 1), Kind::unknown, "did you mean 'mass'?"},
+      {message("/physics/body/arn/part/tip/mass", 1), Kind::unknown, "did you mean 'arm'?"},
+      {message("/physics/part/masss", 1), Kind::unknown, "did you mean '/physics/part/mass'?"},
+      {message("/transport/plya"), Kind::unknown, "`limber describe` lists all"},
+      {message("no slash", 1), Kind::unknown, "it must begin with /"},
+      {message("/", 1), Kind::unknown, "there is no address /"},
+      {message("", 1), Kind::unknown, "it must begin with /"},
+      {message("/get"), Kind::refused, "takes a path"},
+      {message("/get", 3), Kind::refused, "takes a path"},
+      {message("/get", "/physics/body/arm"), Kind::refused, "'/physics/body/arm' is no value"},
+      {message("/get", "/physics/sim/gravty"), Kind::refused, "did you mean 'gravity'?"},
+      {message("/list/parts"), Kind::refused, "takes the name of a body"},
+      {message("/list/parts", "arn"), Kind::refused, "there is no body 'arn'; did you mean 'arm'?"},
+      {message("/list/bodies", 1), Kind::refused, "takes no arguments"},
+      {message("/physics/part/applyforce", "arm", "tip", 1, 2), Kind::refused, "takes 3 or 6 numbers"},
+      {message("/physics/body/arm/reset", 1, 2), Kind::refused, "takes no value, not 2"},
+  };
+  Rig rig;
+  const std::vector<double> before = rig.everything();
+  for (const Case& c : cases) {
+    rig.dispatch.begin_tick();
+    const Outcome outcome = rig.dispatch.execute(c.message);
+    EXPECT_EQ(outcome.kind, c.kind) << c.message.address << ": " << c.says;
+    EXPECT_NE(outcome.error.find(c.says), std::string::npos) << c.message.address << "\n  " << outcome.error;
+    EXPECT_FALSE(outcome.kept);
+  }
+  EXPECT_EQ(rig.everything(), before);
+}
+
+TEST(Dispatch, OutsideTheRangeIsClampedAndTold) {
+  Rig rig;
+  const Outcome low = rig.send("/physics/part/mass", "arm", "tip", -3);
+  EXPECT_EQ(low.kind, Kind::applied);
+  EXPECT_EQ(low.clamped, &Part::table().at("mass"));
+  EXPECT_EQ(rig.read("/physics/body/arm/part/tip/mass"), (Values{0.001}));
+  EXPECT_NE(rig.send("/physics/body/arm/part/tip/restitution", 7).clamped, nullptr);
+  EXPECT_EQ(rig.read("/physics/body/arm/part/tip/restitution"), (Values{1}));
+  EXPECT_NE(rig.send("/physics/sim/gravity", 1e9, 0, 0).clamped, nullptr);
+  EXPECT_EQ(rig.read("/physics/sim/gravity"), (Values{1e4, 0, 0}));
+  EXPECT_NE(rig.send("/physics/sim/substeps", 0).clamped, nullptr);
+  EXPECT_EQ(rig.read("/physics/sim/substeps"), (Values{1}));
+  EXPECT_EQ(rig.send("/physics/sim/substeps", 3).clamped, nullptr);
+}
+
+TEST(Dispatch, ButtonsPressAndLetGo) {
+  Rig rig;
+  const Arg bang;
+  for (const Arg& press : {bang, arg(1), arg(true), arg(127)}) {
+    EXPECT_EQ(rig.send("/physics/sim/reset", press).kind, Kind::applied);
+    EXPECT_TRUE(rig.world.take_reset_request());
+  }
+  EXPECT_EQ(rig.send("/physics/sim/reset").kind, Kind::applied);
+  EXPECT_TRUE(rig.world.take_reset_request());
+  for (const Arg& release : {arg(0), arg(false)}) {
+    EXPECT_EQ(rig.send("/physics/sim/reset", release).kind, Kind::applied);
+    EXPECT_FALSE(rig.world.take_reset_request());
+  }
+}
+
+TEST(Dispatch, ListsAndValuesAreAnswered) {
+  Rig rig;
+  const auto words = [](const Outcome& outcome) {
+    std::string text = outcome.answers.empty() ? "none" : outcome.answers[0].address;
+    for (const Arg& a : outcome.answers.empty() ? std::vector<Arg>{} : outcome.answers[0].args) text += " " + a.text;
+    return text;
+  };
+  EXPECT_EQ(words(rig.send("/list/bodies")), "/list/bodies arm 1 floor");
+  EXPECT_EQ(words(rig.send("/list/parts", "arm")), "/list/parts arm base upper lower tip");
+  EXPECT_EQ(words(rig.send("/list/joints", "arm")), "/list/joints arm shoulder elbow slide");
+  EXPECT_EQ(words(rig.send("/list/motors", 1)), "/list/motors 1 shoulder");
+  EXPECT_EQ(words(rig.send("/list/shapes")), "/list/shapes ball ground");
+
+  const Outcome one = rig.send("/get", "/physics/body/arm/part/tip/position");
+  ASSERT_EQ(one.answers.size(), 1U);
+  EXPECT_EQ(one.answers[0].address, "/physics/body/arm/part/tip/position");
+  ASSERT_EQ(one.answers[0].args.size(), 3U);
+  EXPECT_EQ(one.answers[0].args[2].number, 2.5);
+  const Outcome many = rig.send("/get", "/physics/body/*/motor/*/mode");
+  ASSERT_EQ(many.answers.size(), 4U);
+  EXPECT_EQ(many.answers[3].address, "/physics/body/1/motor/shoulder/mode");
+  EXPECT_EQ(many.answers[3].args.size(), 1U);
+  EXPECT_EQ(many.answers[3].args[0].number, 2) << "made as a servo";
+  EXPECT_EQ(rig.send("/get", "//").kind, Kind::refused);
+  for (const Irregular& irregular : Dispatch::irregulars())
+    EXPECT_NE(rig.send(std::string(irregular.address)).kind, Kind::unknown) << irregular.address;
+}
+
+TEST(Dispatch, NearNamesAreBoundedPerTick) {
+  Rig rig;
+  rig.dispatch.begin_tick();
+  int hinted = 0;
+  for (int i = 0; i < 1000; i++) {
+    const Outcome outcome = rig.dispatch.execute(message("/physics/part/masss", 1));
+    EXPECT_EQ(outcome.kind, Kind::unknown);
+    hinted += outcome.error.find("did you mean") != std::string::npos;
+  }
+  EXPECT_EQ(hinted, HintBudget::kPerTick);
+  rig.dispatch.begin_tick();
+  EXPECT_NE(rig.dispatch.execute(message("/physics/part/masss", 1)).error.find("did you mean"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace limber::engine_test

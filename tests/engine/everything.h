@@ -1,0 +1,30 @@
+// A scene that holds one of everything: each class of thing, each type of joint, each kind of parameter.
+#pragma once
+
+namespace limber::engine_test {
+
+inline constexpr const char* kEverything = R"(
+sim.gravity = vec3(0, 0, -9.81)
+sim:add_body("floor"):add_part("floor", sim:add_plane_shape("ground"))
+local shape = sim:add_box_shape("brick", vec3(0.1, 0.1, 0.2))
+local body = sim:add_body("arm", {})
+body:add_part("base", shape, { mass = 0, position = vec3(0, 0, 1) })
+for i, kind in ipairs { "revolute", "prismatic", "spherical", "planar", "floating" } do
+  body:add_part("part_" .. kind, shape, { position = vec3(0.3 * i, 0, 1) })
+  local joint = body:add_joint(kind, i == 1 and "base" or body.parts[i].name, "part_" .. kind,
+    { type = kind, position = vec3(0.3 * i, 0, 1) })
+  body:add_motor(joint)
+end
+body:add_part("hat", shape, { position = vec3(2, 0, 1) })
+body:add_joint("weld", "part_floating", "hat", { type = "fixed" })
+sim:add_body("free"):add_part("free", shape, { position = vec3(0, 4, 2) })
+body:copy("twin", { position = vec3(0, 2, 1) })
+params {
+  { "wind", 0, min = 0, max = 10, unit = "N", doc = "A number." },
+  { "where", vec3(0, 0, 1), min = -1, max = 2, doc = "A vec3." },
+  { "lively", true, doc = "A boolean." },
+  { "style", "calm", choices = { "calm", "wild" }, doc = "A choice." },
+}
+)";
+
+}  // namespace limber::engine_test

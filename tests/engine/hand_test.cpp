@@ -1,0 +1,47 @@
+// The performer's hand: the last value for each address and names, the newest last.
+#include "engine/hand.h"
+
+#include "engine/show.h"
+
+namespace limber::engine_test {
+namespace {
+
+std::vector<std::string> texts(const PerformerHand& hand) {
+  std::vector<std::string> list;
+  for (const Message* m : hand.in_order()) list.push_back(text_of(*m));
+  return list;
+}
+
+TEST(PerformerHand, KeepsTheLastForEachAddressAndNames) {
+  PerformerHand hand;
+  EXPECT_TRUE(texts(hand).empty());
+  hand.remember(message("/physics/part/mass", 1));
+  hand.remember(message("/physics/part/mass", "arm", 2));
+  hand.remember(message("/physics/part/mass", "arm", "tip", 3));
+  hand.remember(message("/physics/sim/gravity", 1, 2, 3));
+  // all parts again: this is the newest now, the arm's value before it no longer counts where both reach
+  hand.remember(message("/physics/part/mass", 4));
+  EXPECT_EQ(texts(hand), (std::vector<std::string>{"/physics/part/mass arm 2", "/physics/part/mass arm tip 3",
+                                                   "/physics/sim/gravity 1 2 3", "/physics/part/mass 4"}));
+  hand.remember(message("/physics/part/mass", "arm", "tip", 5));
+  EXPECT_EQ(texts(hand).back(), "/physics/part/mass arm tip 5");
+  EXPECT_EQ(hand.size(), 4U);
+}
+
+TEST(PerformerHand, TwoNamesAreNotOneLongName) {
+  PerformerHand hand;
+  hand.remember(message("/a", "b", "c", 1));
+  hand.remember(message("/a", "bc", 2));
+  EXPECT_EQ(hand.size(), 2U);
+}
+
+TEST(PerformerHand, AFloodOfAddressesEnds) {
+  PerformerHand hand;
+  for (int i = 0; i < 70000; i++) hand.remember(message(fmt::format("/physics/body/b{}/part/p/mass", i), i));
+  EXPECT_EQ(hand.size(), 65536U);
+  hand.remember(message("/physics/body/b5/part/p/mass", -1));
+  EXPECT_EQ(texts(hand).back(), "/physics/body/b5/part/p/mass -1") << "what is known can still change";
+}
+
+}  // namespace
+}  // namespace limber::engine_test

@@ -1,0 +1,104 @@
+// A small world for the engine's tests: two bodies with joints and motors, one of them called "1", and a floor.
+#pragma once
+
+#include <array>
+#include <memory>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include "base/message.h"
+#include "engine/dispatch.h"
+#include "params/catalog.h"
+#include "sim/world.h"
+
+namespace limber::engine_test {
+
+inline Arg arg(double v) { return Arg::of(v); }
+inline Arg arg(int v) { return Arg::of(static_cast<double>(v)); }
+inline Arg arg(bool v) { return Arg::of(v); }
+inline Arg arg(const char* v) { return Arg::of(v); }
+inline Arg arg(const std::string& v) { return Arg::of(std::string_view(v)); }
+inline Arg arg(Arg v) { return v; }
+
+template <class... A>
+Message message(std::string address, A&&... args) {
+  return {std::move(address), {arg(std::forward<A>(args))...}};
+}
+
+inline ShapeModel ball() {
+  ShapeModel model;
+  model.kind = ShapeKind::sphere;
+  model.radius = 0.05;
+  return model;
+}
+
+/// "arm": base (static), upper, lower, tip with the revolute joints shoulder and elbow and the prismatic slide.
+/// "1": base (static) and tip with the revolute joint shoulder. "floor": one static part of that name.
+inline void build_bodies(World& world) {
+  ShapeModel ground;
+  ground.kind = ShapeKind::plane;
+  Shape& sphere = **world.add_shape("ball", ball());
+  Shape& plane = **world.add_shape("ground", ground);
+  const auto pose = [](double x, double z) { return Pose{{x, 0, z}, quat_identity()}; };
+  const auto hang = [](Body& body, const char* name, const char* from, const char* to, JointType type) {
+    Part& child = *body.find_part(to);
+    const Vec3 axis = type == JointType::prismatic ? Vec3(0, 0, 1) : Vec3(0, 1, 0);
+    Joint& joint = **body.add_joint(name, *body.find_part(from), child, type, child.pose().position, axis);
+    ASSERT_TRUE(body.add_motor(joint).ok());
+  };
+  Body& arm = **world.add_body("arm");
+  ASSERT_TRUE(arm.add_part("base", sphere, 0, pose(0, 1)).ok());
+  ASSERT_TRUE(arm.add_part("upper", sphere, 1, pose(0, 1.5)).ok());
+  ASSERT_TRUE(arm.add_part("lower", sphere, 1, pose(0, 2)).ok());
+  ASSERT_TRUE(arm.add_part("tip", sphere, 1, pose(0, 2.5)).ok());
+  hang(arm, "shoulder", "base", "upper", JointType::revolute);
+  hang(arm, "elbow", "upper", "lower", JointType::revolute);
+  hang(arm, "slide", "lower", "tip", JointType::prismatic);
+  Body& one = **world.add_body("1");
+  ASSERT_TRUE(one.add_part("base", sphere, 0, pose(3, 1)).ok());
+  ASSERT_TRUE(one.add_part("tip", sphere, 1, pose(3, 1.5)).ok());
+  hang(one, "shoulder", "base", "tip", JointType::revolute);
+  Body& floor = **world.add_body("floor");
+  ASSERT_TRUE(floor.add_part("floor", plane, 0, pose(0, 0)).ok());
+  world.settle();
+}
+
+/// Store, world and dispatch as the engine has them, with the bodies above.
+struct Rig {
+  Store store;
+  World world{store};
+  Dispatch dispatch{world};
+
+  Rig() { build_bodies(world); }
+
+  template <class... A>
+  Outcome send(std::string address, A&&... args) {
+    dispatch.begin_tick();
+    return dispatch.execute(message(std::move(address), std::forward<A>(args)...));
+  }
+
+  /// What a path holds now, or nothing where there is no such value.
+  std::vector<double> read(const std::string& path) const {
+    const Result<Place> place = find_place(store, path);
+    if (!place || place->row == nullptr) {
+      ADD_FAILURE() << path << " is no value";
+      return {};
+    }
+    std::vector<double> values(place->row->width);
+    store.get(place->node, *place->row, values.data());
+    return values;
+  }
+
+  /// Every kept and live number of the world: what a refused message must not change.
+  std::vector<double> everything() const {
+    std::vector<double> all(store.kept().begin(), store.kept().end());
+    all.insert(all.end(), store.live().begin(), store.live().end());
+    return all;
+  }
+};
+
+}  // namespace limber::engine_test

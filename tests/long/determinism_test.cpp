@@ -1,0 +1,25 @@
+// Twenty processes, one hash: every way to play in every surrounding.
+#include "app/determinism.h"
+
+namespace limber::app_test {
+namespace {
+
+TEST(LongDeterminism, TwentyProcesses) {
+  const Folder folder;
+  const std::string scene = folder.file("wild.lua", kWildScene);
+  const std::string first = hash_of(scene, {"--fast"}, {}, "2000");
+  ASSERT_TRUE(first.ends_with(" tick 2000\n")) << first;
+  int processes = 0;
+  while (processes < 20) {
+    for (const auto& before : surroundings()) {
+      for (const auto& how : ways_to_play()) {
+        EXPECT_EQ(hash_of(scene, how, before, "2000"), first)
+            << fmt::format("{} {}", fmt::join(before, " "), fmt::join(how, " "));
+        processes++;
+      }
+    }
+  }
+}
+
+}  // namespace
+}  // namespace limber::app_test
