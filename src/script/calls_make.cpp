@@ -1,7 +1,6 @@
 // Behind the door: bodies, parts, joints, motors, shapes, URDF files.
 #include <algorithm>
 #include <cmath>
-#include <mutex>
 
 #include <fmt/format.h>
 
@@ -9,7 +8,7 @@
 #include "base/text.h"
 #include "model/hull.h"
 #include "model/mass_properties.h"
-#include "model/mesh_load.h"
+#include "model/model_library.h"
 #include "script/context.h"
 
 namespace limber::calls {
@@ -31,25 +30,10 @@ void place(BuildOptions& build, const double* pose) {
   if (std::isfinite(pose[3])) build.rotation = glm::normalize(quat_xyzw(pose[3], pose[4], pose[5], pose[6]));
 }
 
-// models are kept for the program's life: a reset or another scene loads the same file at no cost
-Result<std::shared_ptr<const BodyModel>> load_model(const std::string& file, const ImportOptions& options) {
-  struct Known {
-    std::string file;
-    FileStamp stamp;
-    ImportOptions options;
-    std::shared_ptr<const BodyModel> model;
-  };
-  static std::mutex mutex;
-  static std::vector<Known> known;
-  static MeshLibrary meshes;
-  const FileStamp stamp = stamp_of(file);
-  const std::scoped_lock lock(mutex);
-  for (const Known& k : known) {
-    if (k.file == file && k.stamp == stamp && k.options == options) return k.model;
-  }
-  Result<std::shared_ptr<const BodyModel>> model = import_urdf(file, options, meshes);
-  if (model) known.push_back({file, stamp, options, *model});
-  return model;
+// kept for the program's life: a reset or another scene loads the same file at no cost
+ModelLibrary& models() {
+  static ModelLibrary library;
+  return library;
 }
 
 void say_problems(const BodyModel& model) {
@@ -78,7 +62,7 @@ Result<std::shared_ptr<const MeshModel>> mesh_of_file(const ScriptContext& c, st
                                                       int max_vertices) {
   const Result<std::string> path = c.files.find(file);
   if (!path) return Error{path.error()};
-  Result<std::shared_ptr<const MeshModel>> mesh = load_mesh(*path, scale);
+  Result<std::shared_ptr<const MeshModel>> mesh = models().meshes().load(*path, scale);
   if (!mesh || max_vertices == HullLimits{}.max_vertices) return mesh;
   auto changed = std::make_shared<MeshModel>(**mesh);
   const Hull hull = reduced_hull(changed->vertices, {std::min(16, max_vertices), max_vertices, HullLimits{}.tolerance});
@@ -240,15 +224,8 @@ std::int32_t load_urdf(void* c, const char* path, std::int32_t path_length, cons
         "'{}' was not loaded when the scene ran; a callback must not wait for a disk, so load it once at the top level",
         text_of(path, path_length)));
   }
-  const Result<std::shared_ptr<const BodyModel>> model = load_model(*file, context.import);
+  const Result<std::shared_ptr<const BodyModel>> model = models().load_urdf(*file, context.import);
   if (!model) return context.refuse(model.error());
-  for (const auto& [joint, value] : context.import.pose) {
-    std::vector<std::string> names;
-    for (const FileJoint& each : (*model)->file_joints) names.push_back(each.name);
-    if (std::find(names.begin(), names.end(), joint) != names.end()) continue;
-    return context.refuse(fmt::format("'{}' has no joint '{}' to pose{}", text_of(path, path_length), printable(joint),
-                                      name_hint(joint, names)));
-  }
   if (!known) say_problems(**model);
   context.loaded_files[*file] = true;
   place(context.build, pose);

@@ -179,9 +179,15 @@ local function axis(direction, angle)
   return Q(v.x * s, v.y * s, v.z * s, math.cos(half))
 end
 
+local function half_angle(angle)
+  angle = P.want_number(angle or 0, "quat.euler") / 2
+  return math.sin(angle), math.cos(angle)
+end
 local function euler(x, y, z)
-  local function about(vx, vy, vz, angle) return axis(V(vx, vy, vz), P.want_number(angle or 0, "quat.euler")) end
-  return multiply(about(0, 0, 1, z), multiply(about(0, 1, 0, y), about(1, 0, 0, x)))
+  local sx, cx = half_angle(x)
+  local sy, cy = half_angle(y)
+  local sz, cz = half_angle(z)
+  return multiply(Q(0, 0, sz, cz), multiply(Q(0, sy, 0, cy), Q(sx, 0, 0, cx)))
 end
 
 -- each environment gets a table of its own, so that nobody spoils another's

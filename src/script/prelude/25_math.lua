@@ -1,7 +1,7 @@
 -- What `math` has beside Lua's own, colours, and the file's seeded generator.
 local P = ...
 local ffi, api, ctx, answer, fail = P.ffi, P.api, P.ctx, P.answer, P.fail
-local V, as_vec3, want_number, istype = P.V, P.as_vec3, P.want_number, P.ffi.istype
+local V, want_number, istype = P.V, P.want_number, P.ffi.istype
 
 local extra = {}
 P.math_extra = extra
@@ -46,12 +46,15 @@ local methods = {}
 local function check(self, what)
   if not istype(R, self) then fail("rng.%s is a method: write rng:%s(…)", what, what) end
 end
+local function wide(v)
+  if type(v) == "number" then return V(v, v, v) end
+  return P.want_vec3(v, "rng:uniform")
+end
 function methods.uniform(self, a, b)
   check(self, "uniform")
   if a == nil and b == nil then return api.random_uniform(ctx) end
   a, b = a or 0, b or 1
   if type(a) == "number" and type(b) == "number" then return a + (b - a) * api.random_uniform(ctx) end
-  local function wide(v) return type(v) == "number" and V(v, v, v) or P.want_vec3(v, "rng:uniform") end
   local lo, hi = wide(a), wide(b)
   local x, y = api.random_uniform(ctx), api.random_uniform(ctx)
   return V(lo.x + (hi.x - lo.x) * x, lo.y + (hi.y - lo.y) * y, lo.z + (hi.z - lo.z) * api.random_uniform(ctx))

@@ -69,27 +69,26 @@ function P.find_in(owner, kind, key)
   return key
 end
 
--- the things that a name, a pattern, a thing, a list of these or "all" means, each once, in stream order
-local function select_from(list, entry, wanted)
-  if wanted == nil or wanted == "all" then return entry.items end
-  if type(wanted) == "string" and entry.matched[wanted] then return entry.matched[wanted] end
-  local owner, kind, chosen, result = thing(list.slot_, list.generation_), list.kind_, {}, {}
-  local function choose(one)
-    if type(one) == "string" and one == "all" then
-      for _, item in ipairs(entry.items) do chosen[item] = true end
-    elseif type(one) == "string" and api.is_pattern(ctx, one, #one) ~= 0 then
-      for _, item in ipairs(entry.items) do
-        local name = P.names[item]
-        if api.matches(ctx, one, #one, name, #name) ~= 0 then chosen[item] = true end
-      end
-    else
-      chosen[P.find_in(owner, kind, one)] = true
+-- marks the things that one wanted word means
+local function choose(list, items, chosen, one)
+  if one == "all" then
+    for _, item in ipairs(items) do chosen[item] = true end
+  elseif type(one) == "string" and api.is_pattern(ctx, one, #one) ~= 0 then
+    for _, item in ipairs(items) do
+      local name = P.names[item]
+      if api.matches(ctx, one, #one, name, #name) ~= 0 then chosen[item] = true end
     end
-  end
-  if type(wanted) == "table" then
-    for _, one in ipairs(wanted) do choose(one) end
   else
-    choose(wanted)
+    chosen[P.find_in(thing(list.slot_, list.generation_), list.kind_, one)] = true
+  end
+end
+
+local function select_anew(list, entry, wanted)
+  local chosen, result = {}, {}
+  if type(wanted) == "table" then
+    for _, one in ipairs(wanted) do choose(list, entry.items, chosen, one) end
+  else
+    choose(list, entry.items, chosen, wanted)
   end
   for _, item in ipairs(entry.items) do
     if chosen[item] then result[#result + 1] = item end
@@ -98,21 +97,30 @@ local function select_from(list, entry, wanted)
   return result
 end
 
+-- the things that a name, a pattern, a thing, a list of these or "all" means, each once, in stream order; without
+-- closures and loops, which would keep a script's loop around it from being compiled
+local function select_from(list, entry, wanted)
+  if wanted == nil then return entry.items end
+  return type(wanted) == "string" and entry.matched[wanted] or select_anew(list, entry, wanted)
+end
+
+local function next_alive(items, i)
+  while items[i] and not alive(items[i]) do i = i + 1 end
+  return i
+end
+
 -- one step of a walk: what has gone meanwhile is passed over
 local function step(walk)
-  local i, items = walk.i, walk.items
-  repeat
-    i = i + 1
-    local item = items[i]
-    if not item or alive(item) then
-      walk.i = i
-      if item then
-        walk.count = walk.count + 1
-        return item, walk.count
-      end
-      return nil
-    end
-  until false
+  local items, i = walk.items, walk.i + 1
+  local item = items[i]
+  if item and not alive(item) then
+    i = next_alive(items, i)
+    item = items[i]
+  end
+  walk.i = i
+  if not item then return nil end
+  walk.count = walk.count + 1
+  return item, walk.count
 end
 
 ffi.metatype(L, {

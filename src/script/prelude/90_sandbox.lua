@@ -100,16 +100,20 @@ local function gather_keys(t)
   for _, key in ipairs(things) do numbers[#numbers + 1] = key end
   return numbers
 end
+local function next_left(keys, t, i)
+  while keys[i] ~= nil and rawget(t, keys[i]) == nil do i = i + 1 end
+  return i
+end
 local function next_pair(walk)
-  local keys, t, i = walk.keys, walk.t, walk.i
-  repeat
-    i = i + 1
-    local key = keys[i]
-    if key == nil then return nil end
-    local value = rawget(t, key)
-    walk.i = i
-    if value ~= nil then return key, value end
-  until false
+  local keys, t, i = walk.keys, walk.t, walk.i + 1
+  local key = keys[i]
+  if key ~= nil and rawget(t, key) == nil then
+    i = next_left(keys, t, i)
+    key = keys[i]
+  end
+  walk.i = i
+  if key == nil then return nil end
+  return key, rawget(t, key)
 end
 local function fixed_pairs(t)
   if istype(P.L, t) or istype(P.F, t) then return P.ipairs(t) end
