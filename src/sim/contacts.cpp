@@ -10,6 +10,8 @@ namespace limber {
 
 namespace {
 Part* part_of(const btCollisionObject* object) { return static_cast<Part*>(object->getUserPointer()); }
+// farther than any point that counts as touching, m
+constexpr double kNoDepth = 1;
 }  // namespace
 
 Contacts::Pair& Contacts::pair_of(Part* a, Part* b) {
@@ -18,7 +20,7 @@ Contacts::Pair& Contacts::pair_of(Part* a, Part* b) {
   for (Pair& pair : pairs_) {
     if (pair.a == a && pair.b == b) return pair;
   }
-  pairs_.push_back({a, b, 0, 0, Vec3(0), false, false});
+  pairs_.push_back({a, b, 0, kNoDepth, Vec3(0), false, false});
   return pairs_.back();
 }
 
@@ -28,7 +30,7 @@ void Contacts::begin_tick() {
     pair.before = pair.now;
     pair.now = false;
     pair.impulse = 0;
-    pair.depth = 1;
+    pair.depth = kNoDepth;
   }
 }
 

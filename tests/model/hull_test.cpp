@@ -119,7 +119,8 @@ TEST(Hull, NearlyFlatAndRepeatedPointsDoNotBreakIt) {
     const Hull hull = convex_hull(points);
     EXPECT_TRUE(is_closed(hull.triangles)) << thickness;
     EXPECT_GT(solid_of(hull.vertices, hull.triangles).mass, 0) << thickness;
-    EXPECT_LT(highest_above(hull, points), 1e-5) << thickness;
+    // a sliver's plane says little; the distance from the surface does
+    EXPECT_LT(farthest_outside(hull, points), 1e-5) << thickness;
   }
 }
 
