@@ -23,7 +23,9 @@ inline Body& make_arm(Stage& s, const std::string& name, const ArmPlan& plan = {
     return known != nullptr ? *known : *s.world.add_shape(key, box_model(size)).value();
   };
   Shape& box = shape("arm link", {0.1, 0.08, 0.2});
-  Part* below = arm.add_part("link0", shape("arm base", {0.2, 0.2, 0.1}), plan.fixed ? 0 : 1, {plan.base, quat_identity()}).value();
+  Part* below =
+      arm.add_part("link0", shape("arm base", {0.2, 0.2, 0.1}), plan.fixed ? 0 : 1, {plan.base, quat_identity()})
+          .value();
   for (int i = 1; i <= plan.links; i++) {
     const Vec3 at = plan.base + Vec3(0, plan.mirror * plan.side_step * i, 0.25 * i);
     Part* link = arm.add_part("link" + std::to_string(i), box, 0.5, {at, quat_identity()}).value();
