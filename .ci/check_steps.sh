@@ -56,7 +56,7 @@ run_tests() {
     failed=$((failed + bad))
     if [ "$bad" != 0 ]; then
       grep -E '\[  (FAILED  |SKIPPED )\] .* \([0-9]+ ms\)$' "$log" | sed 's/^/    /'
-      grep -B1 -A8 ': Failure$' "$log" | head -60 | sed 's/^/    /'
+      grep -B1 -A8 ': Failure$' "$log" | head -30 | sed 's/^/    /'
     elif [ $rc != 0 ]; then
       # it crashed, hung, or a sanitizer spoke after the last test
       fail "$folder/test_$room ended with code $rc (124 and 137: too slow)" "$log"
