@@ -31,10 +31,13 @@ Extent extent_of(std::span<const Vec3> points) {
 // meshes come in single precision: what is within its noise of a plane lies in the plane
 double epsilon_of(const Extent& e) { return 1e-6 * e.size + 2e-7 * e.farthest + 1e-12; }
 
+// thinner than a ten-thousandth of its size, a cloud's rim is all slivers, whose planes mean nothing: it counts as flat
+double thinnest_of(const Extent& e) { return 100 * epsilon_of(e); }
+
 /// The cloud and a copy of it shifted to each side, along the directions in which it has no thickness.
 std::vector<Vec3> thickened(std::span<const Vec3> points, const Extent& extent) {
   const double t = std::max(1e-3 * extent.size, 1e-4);
-  const double least = 20 * epsilon_of(extent);
+  const double least = 2 * thinnest_of(extent);
   const Vec3 base = points[0];
   const auto farthest = [&](const auto& measure) {
     return *std::max_element(points.begin(), points.end(),
@@ -151,14 +154,15 @@ double triangle_distance(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3
 
 Hull convex_hull(std::span<const Vec3> points) {
   if (points.empty()) return {};
-  HullSurface surface(points, epsilon_of(extent_of(points)));
-  if (surface.start()) {
+  const Extent extent = extent_of(points);
+  HullSurface surface(points, epsilon_of(extent));
+  if (surface.start(thinnest_of(extent))) {
     Quickhull(surface).run(static_cast<int>(points.size()));
     return surface.result();
   }
-  const std::vector<Vec3> thick = thickened(points, extent_of(points));
+  const std::vector<Vec3> thick = thickened(points, extent);
   HullSurface solid(thick, epsilon_of(extent_of(thick)));
-  if (!solid.start()) return {};
+  if (!solid.start(thinnest_of(extent_of(thick)))) return {};
   Quickhull(solid).run(static_cast<int>(thick.size()));
   return solid.result();
 }
@@ -168,7 +172,7 @@ Hull reduced_hull(const Hull& whole, const HullLimits& limits) {
   if (count <= std::min(limits.min_vertices, limits.max_vertices)) return whole;
   const Extent extent = extent_of(whole.vertices);
   HullSurface surface(whole.vertices, epsilon_of(extent) * 0.1);
-  if (!surface.start()) return whole;
+  if (!surface.start(10 * surface.epsilon())) return whole;
   // distances only shrink while the surface grows: an old one is an upper bound, so only the top is measured anew
   std::priority_queue<std::pair<double, int>> farthest;
   for (int i = 0; i < count; ++i) farthest.emplace(surface.distance(i), -i);

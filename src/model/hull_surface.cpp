@@ -31,7 +31,7 @@ bool HullSurface::set_plane(Face& face) const {
   return true;
 }
 
-bool HullSurface::start() {
+bool HullSurface::start(double thinnest) {
   const int count = static_cast<int>(points_.size());
   const auto farthest = [&](const auto& measure) {
     int best = 0;
@@ -46,13 +46,13 @@ bool HullSurface::start() {
   const int a = farthest([&](const Vec3& p) { return glm::length(p - any); }).first;
   const Vec3 pa = points_[at(a)];
   const auto [b, length] = farthest([&](const Vec3& p) { return glm::length(p - pa); });
-  if (length <= 10 * epsilon_) return false;
+  if (length <= thinnest) return false;
   const Vec3 along = (points_[at(b)] - pa) / length;
   const auto [c, width] = farthest([&](const Vec3& p) { return glm::length(glm::cross(p - pa, along)); });
-  if (width <= 10 * epsilon_) return false;
+  if (width <= thinnest) return false;
   const Vec3 up = normalized(glm::cross(along, points_[at(c)] - pa));
   const auto [d, height] = farthest([&](const Vec3& p) { return std::abs(glm::dot(p - pa, up)); });
-  if (height <= 10 * epsilon_) return false;
+  if (height <= thinnest) return false;
 
   corners_ = {a, b, c, d};
   if (glm::dot(points_[at(d)] - pa, up) > 0) std::swap(corners_[1], corners_[2]);

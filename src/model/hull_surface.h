@@ -25,8 +25,8 @@ class HullSurface {
   /// `epsilon`: points within it count as inside.
   HullSurface(std::span<const Vec3> points, double epsilon) : points_(points), epsilon_(epsilon) {}
 
-  /// Four corners that span a volume; false when the cloud is flatter than that.
-  bool start();
+  /// Four corners that span a volume; false when the cloud is thinner than `thinnest`, metres.
+  bool start(double thinnest);
   /// Adds a point that lies above `seen`. The faces made are added_faces(), those that died are dead_faces().
   /// False when the surface would become degenerate: the point is then left out.
   bool add(int point, int seen);

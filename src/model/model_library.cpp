@@ -41,7 +41,7 @@ Result<std::shared_ptr<const BodyModel>> ModelLibrary::load_urdf(const std::stri
   // imported without the lock, which other threads may need meanwhile; the URDF's stamp is taken first, so that a
   // change during the import is seen the next time
   const FileStamp before = stamp_of(path);
-  const Result<std::shared_ptr<const BodyModel>> model = import_urdf(path, options, meshes_);
+  Result<std::shared_ptr<const BodyModel>> model = import_urdf(path, options, meshes_);
   if (!model) return model;
   Entry entry{*model, {}};
   for (const std::string& file : (*model)->files) entry.stamps.push_back(stamp_of(file));

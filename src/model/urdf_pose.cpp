@@ -197,7 +197,7 @@ void place(UrdfBuild& build) {
 
 Result<void> build_poses(UrdfBuild& build) {
   Mimics(build).run();
-  if (const Result<void> taken = take_pose(build); !taken) return taken;
+  if (Result<void> taken = take_pose(build); !taken) return taken;
   set_starts(build);
   place(build);
   return {};

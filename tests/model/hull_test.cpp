@@ -18,7 +18,11 @@ std::vector<Vec3> cloud(std::uint64_t seed, int count) {
   Random random(seed);
   std::vector<Vec3> points;
   for (int i = 0; i < count; ++i) {
-    points.push_back(Vec3(uniform(random), uniform(random), uniform(random)) * 2.0 - 1.0);
+    // one draw a line: compilers differ in the order of arguments
+    const double x = uniform(random);
+    const double y = uniform(random);
+    const double z = uniform(random);
+    points.push_back(Vec3(x, y, z) * 2.0 - 1.0);
   }
   return points;
 }
@@ -35,20 +39,23 @@ double highest_above(const Hull& hull, const std::vector<Vec3>& points) {
   return most;
 }
 
-/// Distance of the farthest point from the hull, every triangle asked.
+/// Distance of the farthest point outside the hull, every triangle asked. Inside is where the triangles are seen under
+/// 4π altogether (Van Oosterom, Strackee 1983), which slivers, whose planes mean nothing, do not disturb.
 double farthest_outside(const Hull& hull, const std::vector<Vec3>& points) {
   double farthest = 0;
   for (const Vec3& p : points) {
-    bool outside = false;
+    double seen = 0;
     double nearest = 1e9;
     for (std::size_t i = 0; i < hull.triangles.size(); i += 3) {
-      const Vec3& a = hull.vertices[hull.triangles[i]];
-      const Vec3& b = hull.vertices[hull.triangles[i + 1]];
-      const Vec3& c = hull.vertices[hull.triangles[i + 2]];
-      outside = outside || glm::dot(glm::cross(b - a, c - a), p - a) > 0;
-      nearest = std::min(nearest, triangle_distance(p, a, b, c));
+      const Vec3 a = hull.vertices[hull.triangles[i]] - p;
+      const Vec3 b = hull.vertices[hull.triangles[i + 1]] - p;
+      const Vec3 c = hull.vertices[hull.triangles[i + 2]] - p;
+      const double x = glm::length(a), y = glm::length(b), z = glm::length(c);
+      seen += 2 * std::atan2(glm::dot(a, glm::cross(b, c)),
+                             x * y * z + glm::dot(a, b) * z + glm::dot(b, c) * x + glm::dot(c, a) * y);
+      nearest = std::min(nearest, triangle_distance(Vec3(0), a, b, c));
     }
-    if (outside) farthest = std::max(farthest, nearest);
+    if (seen < 2 * kPi) farthest = std::max(farthest, nearest);
   }
   return farthest;
 }
