@@ -87,6 +87,7 @@ struct Show {
     std::vector<Outgoing> out;
     link.outbox.drain(out);
     std::vector<std::string> texts;
+    texts.reserve(out.size());
     for (const Outgoing& o : out) texts.push_back(text_of(o.message));
     return texts;
   }
