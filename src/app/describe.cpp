@@ -28,6 +28,11 @@ std::string range_text(const Row& row) {
 std::string initial_text(const Row& row) {
   if (!row.writable()) return "";
   if (!row.choices.empty()) return row.choices[static_cast<std::size_t>(row.initial[0])];
+  if (row.type == RowType::boolean || row.type == RowType::flags3) {
+    std::vector<std::string_view> truths;
+    for (std::uint32_t i = 0; i < row.width; i++) truths.push_back(row.initial[i] != 0 ? "true" : "false");
+    return fmt::format("{}", fmt::join(truths, " "));
+  }
   return fmt::format("{:g}", fmt::join(row.initial.begin(), row.initial.begin() + row.width, " "));
 }
 

@@ -48,6 +48,19 @@ CLI::Validator positive_time() {
       "", "seconds");
 }
 
+// a count as text: 0 and up, as far as a double counts in whole steps
+CLI::Validator whole_number() {
+  return CLI::Validator(
+      [](std::string& text) {
+        const bool digits = !text.empty() && text.size() <= 16 && text.find_first_not_of("0123456789") == text.npos;
+        const std::optional<double> number = digits ? parse_number(text) : std::nullopt;
+        return number && *number <= 9007199254740992.0
+                   ? std::string()
+                   : fmt::format("'{}' is no whole number from 0 to 9007199254740992", text);
+      },
+      "", "count");
+}
+
 CLI::App* add_play(CLI::App& app, PlayOptions& o) {
   CLI::App* play = app.add_subcommand("play", "play a scene (the default command)");
   play->add_option("scene", o.scene, "the scene's file; left out: scripts/arms.lua")->type_name("SCENE.lua");
@@ -55,10 +68,10 @@ CLI::App* add_play(CLI::App& app, PlayOptions& o) {
       "--headless", [] {}, "without a window (today it always is)");
   play->add_flag("--fast", o.fast, "as fast as it can instead of in real time; no OSC unless asked for");
   play->add_option("--duration", o.duration, "end at that simulated time")->type_name("S")->check(positive_time());
-  play->add_option("--ticks", o.ticks, "end after so many ticks")->type_name("N");
+  play->add_option("--ticks", o.ticks, "end after so many ticks")->type_name("N")->check(whole_number());
   play->add_option("--seed", o.seed, "seed of everything random; wins over sim.seed of the scene")
       ->type_name("N")
-      ->check(CLI::Range(std::uint64_t{0}, std::uint64_t{1} << 53));
+      ->check(whole_number());
   play->add_option("--set", o.sets, "set a value after the scene ran; a path or the seed's address")
       ->type_name("PATH=VALUE")
       ->allow_extra_args(false);
@@ -131,7 +144,9 @@ void add_bench(CLI::App& app, CommandLine& line) {
   bench->add_option("scene", line.bench.scenes, "which ones; left out: all")->type_name("SCENE");
   bench->add_flag("--compare-raw", line.bench.compare_raw, "beside a bare Bullet loop, interleaved, with the ratio");
   bench->add_flag("--json", line.bench.json, "for machines");
-  bench->add_option("--ticks", line.bench.ticks, "ticks a round; left out: chosen for each scene")->type_name("N");
+  bench->add_option("--ticks", line.bench.ticks, "ticks a round; left out: chosen for each scene")
+      ->type_name("N")
+      ->check(whole_number());
 }
 
 // what was wrong, as CLI11 tells it; for an option that there is not, the near one
@@ -145,8 +160,8 @@ std::string usage_text(const CLI::App& app, const CLI::ParseError& error) {
     for (const CLI::Option* known : command->get_options()) names.push_back(known->get_name());
     const std::vector<std::string_view> views(names.begin(), names.end());
     const std::string_view near = nearest_name(option, views);
-    return fmt::format("there is no option '{}'{}; {}", printable(option),
-                       near.empty() ? "" : fmt::format("; did you mean '{}'?", near), help);
+    return fmt::format("there is no option '{}'; {}{}", printable(option),
+                       near.empty() ? "" : fmt::format("did you mean '{}'? ", near), help);
   }
   return fmt::format("{}; {}", printable(error.what()), help);
 }

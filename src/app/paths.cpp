@@ -28,6 +28,7 @@ std::string data_dir() {
 }
 
 std::string find_scene(std::string_view name, std::vector<std::string>& looked) {
+  if (name.empty()) return {};
   std::vector<fs::path> places{fs::path(name)};
   const std::string data = data_dir();
   if (!data.empty() && fs::path(name).is_relative()) places.push_back(fs::path(data) / name);
@@ -40,6 +41,7 @@ std::string find_scene(std::string_view name, std::vector<std::string>& looked) 
 }
 
 std::string no_scene(std::string_view name, const std::vector<std::string>& looked) {
+  if (name.empty()) return "the scene's name is empty; leave it out to play scripts/arms.lua";
   return fmt::format("there is no scene '{}'; looked for {}; a scene is a .lua file, such as scripts/hello.lua", name,
                      fmt::join(looked, " and "));
 }

@@ -53,7 +53,10 @@ Result<Message> parse_set(const std::string& text) {
       message.args.push_back(Arg::of(word));
     }
   }
-  if (message.args.empty()) return Error{fmt::format("--set '{}': there is no value after the =", text)};
+  if (message.args.empty()) {
+    return Error{fmt::format(
+        "--set '{}': there is no value after the =; write PATH=VALUE, such as /physics/sim/gravity=0,0,-1.6", text)};
+  }
   return message;
 }
 

@@ -53,8 +53,11 @@ Result<void> Engine::start() {
   scene_seed_ = world.seed();
   for (const Message& message : options_.sets) {
     const Outcome outcome = stage_->dispatch.execute(message);
-    if (outcome.kind == Outcome::Kind::answered)
-      return Error{fmt::format("--set {}: this is no value", message.address)};
+    if (outcome.kind == Outcome::Kind::answered) {
+      return Error{
+          fmt::format("--set {}: this is a question, no value; set a path, such as /physics/sim/gravity=0,0,-1.6",
+                      message.address)};
+    }
     if (outcome.kind != Outcome::Kind::applied)
       return Error{fmt::format("--set {}: {}", printable(message.address), outcome.error)};
     if (outcome.clamped != nullptr) say_clamped(message, *outcome.clamped);

@@ -51,12 +51,7 @@ TEST(Options, ASceneIsFoundHereOrInTheProgramsData) {
   const Folder folder;
   folder.file("my.lua", "print('here')\n");
   EXPECT_EQ(run({"my.lua", "--fast", "--ticks", "1"}, folder.path()).out, "here\n");
-  // as it is installed: the program in bin, its data in share/limber
-  folder.file("share/limber/scripts/far.lua", "print('far')\n");
-  folder.file("share/limber/urdf/readme", "");
-  const std::string program = folder.file("bin/limber", "");
-  std::filesystem::copy_file(LIMBER_PROGRAM, program, std::filesystem::copy_options::overwrite_existing);
-  std::filesystem::permissions(program, std::filesystem::perms::owner_all);
+  const std::string program = install_copy(folder);
   const Ran ran = Running({program, "scripts/far.lua", "--fast", "--ticks", "1"}, "/").finish();
   EXPECT_EQ(ran.out, "far\n") << ran.err;
 }

@@ -152,4 +152,14 @@ class Folder {
   std::filesystem::path path_;
 };
 
+/// The program as it is installed: in bin, with a scene and an (empty) urdf folder in share/limber.
+inline std::string install_copy(const Folder& folder) {
+  folder.file("share/limber/scripts/far.lua", "print('far')\n");
+  folder.file("share/limber/urdf/readme", "");
+  const std::string program = folder.file("bin/limber", "");
+  std::filesystem::copy_file(LIMBER_PROGRAM, program, std::filesystem::copy_options::overwrite_existing);
+  std::filesystem::permissions(program, std::filesystem::perms::owner_all);
+  return program;
+}
+
 }  // namespace limber::app_test

@@ -315,7 +315,7 @@ TEST(Engine, SetsAreThePerformersHandBeforeTheFirstTick) {
                              "'/physics/sim/gravity'?"},
                         Case{message("/physics/body/bal/part/ball/mass", 1), "did you mean 'ball'?"},
                         Case{message("/physics/part/mass", "ball", "ball", "x"), "takes 1 number"},
-                        Case{message("/list/bodies"), "--set /list/bodies: this is no value"}}) {
+                        Case{message("/list/bodies"), "--set /list/bodies: this is a question, no value"}}) {
     options.sets = {c.set};
     EngineLink link;
     Engine engine(link, options);

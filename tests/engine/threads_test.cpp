@@ -78,7 +78,7 @@ TEST(Threads, ManyHandsOneEngineManyReaders) {
 }
 
 TEST(Threads, StoppingIsSafeAtAnyMoment) {
-  for (int i = 0; i < 20; i++) {
+  for (int i = 0; i < 8; i++) {
     EngineLink link;
     EngineOptions options;
     options.fast = i % 2 == 0;

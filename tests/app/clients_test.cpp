@@ -1,0 +1,79 @@
+// Real clients play the running program and read its streams: liblo's oscsend and oscdump, and Pure Data.
+#include <netinet/in.h>
+#include <sys/socket.h>
+
+#include "app/program.h"
+
+namespace limber::app_test {
+namespace {
+
+// an arm of one hanging joint that tells what it was sent
+constexpr const char* kScene = R"(
+local shape = sim:add_sphere_shape("ball", 0.1)
+local arm = sim:add_body("arm")
+arm:add_part("base", shape, { mass = 0, position = vec3(1, 2, 3) })
+arm:add_part("tip", shape, { position = vec3(1, 2, 2.5) })
+arm:add_joint("elbow", "base", "tip", { position = vec3(1, 2, 3), axis = vec3(0, 1, 0) })
+osc:on("/physics/part/friction", function() print("friction", arm:part("tip").friction) end)
+osc:on("/physics/sim/gravity", function() print("gravity", sim.gravity.z) end)
+)";
+
+// a UDP port that is free now; the client takes it in a moment
+std::string free_port() {
+  const int fd = socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0);
+  sockaddr_in at{};
+  at.sin_family = AF_INET;
+  at.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+  socklen_t size = sizeof at;
+  EXPECT_EQ(bind(fd, reinterpret_cast<const sockaddr*>(&at), size), 0);
+  getsockname(fd, reinterpret_cast<sockaddr*>(&at), &size);
+  close(fd);
+  return std::to_string(ntohs(at.sin_port));
+}
+
+// the program with ports of its own; `in` is where it listens
+struct Player {
+  Folder folder;
+  std::string out = free_port();
+  Running running{limber({folder.file("s.lua", kScene), "--osc-in", "127.0.0.1:0", "--osc-out", "127.0.0.1:" + out})};
+  std::string in;
+
+  Player() {
+    EXPECT_TRUE(running.wait_for("playing headless")) << running.err();
+    const std::string mark = "OSC in 127.0.0.1:";
+    const std::size_t at = running.err().find(mark) + mark.size();
+    in = running.err().substr(at, running.err().find('\n', at) - at);
+  }
+};
+
+TEST(Clients, OscsendPlays) {
+  Player player;
+  const std::string url = "osc.udp://127.0.0.1:" + player.in;
+  EXPECT_EQ(Running({"oscsend", url, "/physics/part/friction", "ssf", "arm", "tip", "0.25"}).finish().code, 0);
+  EXPECT_TRUE(player.running.wait_for("friction\t0.25\n", true)) << player.running.out();
+  EXPECT_EQ(Running({"oscsend", url, "/physics/sim/gravity", "i", "-3"}).finish().code, 0);
+  EXPECT_TRUE(player.running.wait_for("gravity\t-3\n", true)) << player.running.out();
+}
+
+TEST(Clients, OscdumpReadsTheStreams) {
+  Player player;
+  Running dump({"stdbuf", "-oL", "oscdump", "-L", player.out});
+  // the joint's point is the base's centre, whatever moves
+  EXPECT_TRUE(dump.wait_for("/physics/joint/pos sfff \"arm\" 1.000000 2.000000 3.000000", true)) << dump.out();
+  EXPECT_TRUE(dump.wait_for("/physics/joint/rot sffff \"arm\" ", true)) << dump.out();
+  EXPECT_TRUE(dump.wait_for("/physics/joint/relrot sfff \"arm\" ", true)) << dump.out();
+}
+
+TEST(Clients, PureDataPlaysReadsAndIsAnswered) {
+  Player player;
+  Running pd({"pd", "-nogui", "-nosound", "-noprefs", "-stderr", "-open", LIMBER_SOURCE_DIR "/tests/app/play.pd",
+              "-send", "ports " + player.in + " " + player.out});
+  EXPECT_TRUE(player.running.wait_for("gravity\t-3\n", true)) << player.running.out() << pd.err();
+  EXPECT_TRUE(player.running.wait_for("friction\t0.75\n", true)) << player.running.out() << pd.err();
+  EXPECT_TRUE(pd.wait_for("pos: arm 1 2 3")) << pd.err();
+  EXPECT_TRUE(pd.wait_for("reply: list physics sim gravity 0 0 -3") || pd.wait_for("reply: physics sim gravity 0 0 -3"))
+      << pd.err();
+}
+
+}  // namespace
+}  // namespace limber::app_test

@@ -1,0 +1,196 @@
+// Every refusal of the program: tests/errors.tsv lists its input, exact text, exit code and cure; this walks it, and
+// looks through the sources for a refusal that is not in it.
+#include <netinet/in.h>
+#include <sys/socket.h>
+
+#include <algorithm>
+#include <iterator>
+#include <regex>
+#include <sstream>
+
+#include "app/program.h"
+
+namespace limber::app_test {
+namespace {
+
+struct Refusal {
+  int line = 0;
+  std::string input;
+  int code = 0;
+  std::string text;
+  std::string cure;
+};
+
+std::string read_file(const std::filesystem::path& path) {
+  std::ifstream in(path);
+  return {std::istreambuf_iterator<char>(in), {}};
+}
+
+void replace_all(std::string& text, const std::string& what, const std::string& with) {
+  for (std::size_t at = text.find(what); at != std::string::npos; at = text.find(what, at + with.size()))
+    text.replace(at, what.size(), with);
+}
+
+std::vector<Refusal> refusals() {
+  std::istringstream in(read_file(LIMBER_SOURCE_DIR "/tests/errors.tsv"));
+  std::vector<Refusal> list;
+  int number = 0;
+  for (std::string line; std::getline(in, line);) {
+    number++;
+    if (line.empty() || line[0] == '#') continue;
+    Refusal r;
+    r.line = number;
+    std::istringstream cells(line);
+    std::string code;
+    std::getline(cells, r.input, '\t');
+    std::getline(cells, code, '\t');
+    std::getline(cells, r.text, '\t');
+    std::getline(cells, r.cure, '\t');
+    r.code = std::atoi(code.c_str());
+    replace_all(r.text, "\\n", "\n");
+    list.push_back(r);
+  }
+  return list;
+}
+
+// a UDP port of this machine that somebody holds
+class TakenPort {
+ public:
+  TakenPort() : fd_(socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0)) {
+    sockaddr_in at{};
+    at.sin_family = AF_INET;
+    at.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+    socklen_t size = sizeof at;
+    if (bind(fd_, reinterpret_cast<const sockaddr*>(&at), size) == 0)
+      getsockname(fd_, reinterpret_cast<sockaddr*>(&at), &size);
+    number_ = ntohs(at.sin_port);
+  }
+  ~TakenPort() { close(fd_); }
+  TakenPort(const TakenPort&) = delete;
+  TakenPort& operator=(const TakenPort&) = delete;
+  std::string number() const { return std::to_string(number_); }
+
+ private:
+  int fd_;
+  std::uint16_t number_ = 0;
+};
+
+// the files that inputs name as <dir>/…
+void write_inputs(const Folder& folder) {
+  folder.file("good.lua", "sim:add_body('arm'):add_part('tip', sim:add_sphere_shape('ball', 0.1))\n");
+  folder.file("syntax.lua", "local x =\n");
+  folder.file("typo.lua", "sim.gravty = vec3(0, 0, 0)\n");
+  folder.file("erring.lua", "sim:on_step(function() error('oh') end)\n");
+  folder.file("endless.lua", "while true do end\n");
+  folder.file("stuck.lua", "sim:at(0, function() while true do end end)\n");
+  folder.file("broken.urdf", "<robot name='r'><link name='a'>");
+}
+
+// arguments parted by blanks, '…' keeping some together
+std::vector<std::string> words_of(const std::string& input) {
+  std::vector<std::string> words;
+  bool inside = false;
+  bool open = false;
+  for (const char c : input) {
+    if (c == '\'') {
+      inside = !inside;
+      if (!open) words.emplace_back();
+      open = true;
+    } else if (c == ' ' && !inside) {
+      open = false;
+    } else {
+      if (!open) words.emplace_back();
+      open = true;
+      words.back() += c;
+    }
+  }
+  return words;
+}
+
+Ran run_input(const std::string& input) {
+  // "^C when TEXT: ARGUMENTS" is somebody's Ctrl+C, twice, once that text was said
+  if (!input.starts_with("^C when ")) return run(words_of(input));
+  const std::size_t colon = input.find(": ");
+  Running running(limber(words_of(input.substr(colon + 2))));
+  running.wait_for(input.substr(8, colon - 8));
+  running.signal(SIGINT);
+  if (running.wait_for("\nlimber: ended ")) return running.finish();
+  running.signal(SIGINT);
+  return running.finish();
+}
+
+TEST(Errors, EachRefusalIsAsTheTableSays) {
+  const Folder folder;
+  write_inputs(folder);
+  const TakenPort taken;
+  const std::vector<Refusal> list = refusals();
+  EXPECT_GT(list.size(), 20U);
+  for (const Refusal& r : list) {
+    std::string input = r.input;
+    std::string text = r.text;
+    for (std::string* s : {&input, &text}) {
+      replace_all(*s, "<dir>", folder.path());
+      replace_all(*s, "<port>", taken.number());
+      replace_all(*s, "<source>", LIMBER_SOURCE_DIR);
+    }
+    const Ran ran = run_input(input);
+    EXPECT_EQ(ran.code, r.code) << "errors.tsv:" << r.line << ": " << input << "\n" << ran.err;
+    // inspect's begin with the file, as a compiler's do
+    const std::string said = "\n" + ran.err;
+    const bool as_listed = said.find("\nlimber: " + text + "\n") != std::string::npos ||
+                           (input.starts_with("inspect") && said.find("\n" + text + "\n") != std::string::npos);
+    EXPECT_TRUE(as_listed) << "errors.tsv:" << r.line << ": " << input << "\nexpected: " << text
+                           << "\nsaid: " << ran.err;
+    EXPECT_NE(r.text.find(r.cure), std::string::npos) << "errors.tsv:" << r.line << ": its text does not hold the cure";
+    EXPECT_FALSE(r.cure.empty()) << "errors.tsv:" << r.line;
+  }
+}
+
+// the constant pieces of the texts that a source file refuses with
+std::vector<std::string> refusal_texts(const std::string& source) {
+  std::vector<std::string> texts;
+  static const std::regex kRefusal(
+      R"re((Error\{|fail\(k|leave\(|usage_text|no_scene|mistyped_command|stderr, "limber: [a-z'])[^;]*;)re");
+  static const std::regex kLiteral(R"re("((?:[^"\\]|\\.)*)")re");
+  for (std::sregex_iterator at(source.begin(), source.end(), kRefusal), end; at != end; ++at) {
+    const std::string statement = at->str();
+    for (std::sregex_iterator l(statement.begin(), statement.end(), kLiteral), none; l != none; ++l) {
+      std::string text = (*l)[1];
+      replace_all(text, "limber: ", "");
+      replace_all(text, "\\n", "");
+      // longest piece between two placeholders
+      std::string longest;
+      for (std::size_t from = 0; from <= text.size();) {
+        const std::size_t open = std::min(text.find('{', from), text.size());
+        if (open - from > longest.size()) longest = text.substr(from, open - from);
+        from = text.find('}', open) == std::string::npos ? text.size() + 1 : text.find('}', open) + 1;
+      }
+      if (longest.size() >= 8) texts.push_back(longest);
+    }
+  }
+  return texts;
+}
+
+TEST(Errors, NoRefusalIsMissingInTheTable) {
+  std::string all;
+  for (const Refusal& r : refusals()) all += r.text + "\n";
+  std::size_t found = 0;
+  for (const auto& entry : std::filesystem::directory_iterator(LIMBER_SOURCE_DIR "/src/app")) {
+    if (entry.path().extension() != ".cpp") continue;
+    for (const std::string& text : refusal_texts(read_file(entry.path()))) {
+      found++;
+      EXPECT_NE(all.find(text), std::string::npos)
+          << entry.path().filename().string() << " refuses with \"" << text << "\", which is not in tests/errors.tsv";
+    }
+  }
+  EXPECT_GT(found, 8U) << "the search finds nothing any more";
+}
+
+TEST(Errors, APlantedRefusalIsFound) {
+  EXPECT_EQ(refusal_texts(R"(if (x) return fail(kInput, fmt::format("the {} is far too blue for {}", a, b));)"),
+            std::vector<std::string>{" is far too blue for "});
+  EXPECT_TRUE(refusal_texts(R"(finding("ok", "limber", "everything is all right");)").empty());
+}
+
+}  // namespace
+}  // namespace limber::app_test
