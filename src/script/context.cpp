@@ -20,7 +20,9 @@ std::int32_t ScriptContext::tell(NodeId id) {
 }
 
 Random& ScriptContext::generator() {
-  if (seeded_with != world.seed()) {
+  // a seed that comes later counts from the next start
+  const bool anew = !seeded_with || (answer.top_level != 0 && *seeded_with != world.seed());
+  if (anew) {
     seeded_with = world.seed();
     random = Random(world.seed(), random_name);
   }

@@ -32,7 +32,7 @@ struct ScriptContext {
   std::string text;  ///< What `answer.text` points to.
   LimberRow row{};
 
-  // generator of the scene's file: of the seed and the file's name, anew when the seed changes
+  // generator of the scene's file: of the seed and the file's name, anew when the top level changes the seed
   std::string random_name;
   std::optional<std::uint64_t> seeded_with;
   Random random;

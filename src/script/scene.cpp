@@ -27,6 +27,7 @@ Result<void> Scene::run(const std::string& file) {
   }
   c.answer.top_level = 1;
   const Result<void> ran = vm_->run(*text, c.files.shown(file));
+  c.generator();  // the seed as the top level leaves it
   c.answer.top_level = 0;
   if (!ran) return ran;
   c.host.plan_osc(c.plan);

@@ -79,9 +79,10 @@ void Vm::load_prelude(ScriptContext& context) {
       lua_pushvalue(L, -2);
       fault = lua_pcall(L, 1, 0, 0);
     }
-    if (fault == 0) continue;
+    const bool prelude_runs = fault == 0;
+    if (prelude_runs) continue;
     log_error("script: {}", text_at(L, -1));
-    LIMBER_CHECK(!"a prelude that runs");
+    LIMBER_CHECK(prelude_runs);
     lua_pop(L, 1);
   }
 }
@@ -106,9 +107,10 @@ void Vm::keep_entries() {
 // an entry catches what scripts throw; what still comes out is a fault of the prelude
 bool Vm::call(int arguments, int results) {
   lua_State* const L = state_.get();
-  if (lua_pcall(L, arguments, results, 0) == 0) return true;
+  const bool entry_caught_all = lua_pcall(L, arguments, results, 0) == 0;
+  if (entry_caught_all) return true;
   log_error("script: {}", text_at(L, -1));
-  LIMBER_CHECK(!"an entry of the prelude that catches its errors");
+  LIMBER_CHECK(entry_caught_all);
   lua_settop(L, 0);
   return false;
 }

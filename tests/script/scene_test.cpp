@@ -250,6 +250,18 @@ TEST(Scene, TheSeedDecidesAndTheCommandLineWins) {
   EXPECT_EQ(other.host.printed.back().substr(other.host.printed.back().rfind('\t')), "\t8");
 }
 
+TEST(Scene, ASeedThatComesLaterCountsFromTheNextStart) {
+  const std::string draw = "sim.seed = 7 sim:on_start(function() {} print(rng:uniform()) end)";
+  const auto first_draw = [&](const std::string& before) {
+    Stage stage;
+    std::string text = draw;
+    text.replace(text.find("{}"), 2, before);
+    EXPECT_EQ(stage.play(text), "");
+    return stage.host.printed;
+  };
+  EXPECT_EQ(first_draw("sim.seed = 8"), first_draw(""));
+}
+
 TEST(Scene, RandomnessHasItsShape) {
   Stage stage;
   ASSERT_EQ(stage.run(R"(
