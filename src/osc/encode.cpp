@@ -54,7 +54,7 @@ std::span<const char> write_packet(PacketBuffer& buffer, const Write& write) {
     write(out);
     return {out.Data(), out.Size()};
   } catch (const std::exception&) {
-    constexpr bool oscpack_found_the_buffer_too_small = true;
+    const bool oscpack_found_the_buffer_too_small = true;
     LIMBER_CHECK(!oscpack_found_the_buffer_too_small);
     return {};
   }

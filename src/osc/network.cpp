@@ -126,9 +126,9 @@ std::vector<std::string> Network::apply(const OscPlan& plan) {
   bound_ = receiver_.bound();
   lines_.clear();
   for (const Endpoint& end : bound_) lines_.push_back("OSC in " + endpoint_text(end));
-  if (bound_.empty()) lines_.push_back("OSC in off");
+  if (bound_.empty()) lines_.emplace_back("OSC in off");
   for (const Target& target : targets_) lines_.push_back("OSC out " + target_text(target.wish));
-  if (targets_.empty()) lines_.push_back("OSC out off");
+  if (targets_.empty()) lines_.emplace_back("OSC out off");
   return faults;
 }
 

@@ -1,9 +1,8 @@
 // OSC's speed: what a datagram costs on its way in, and a frame of a thousand bodies on its way out.
 #include <benchmark/benchmark.h>
 
-#include <time.h>
-
 #include <algorithm>
+#include <ctime>
 #include <memory>
 #include <string>
 #include <thread>
@@ -23,6 +22,12 @@ using namespace osc_test;
 
 std::string mass_message() {
   return Bytes().text("/physics/part/mass").text(",ssf").text("quadruped").text("foot_1").f(0.25f).str();
+}
+
+Snapshot thousand_arms() {
+  std::vector<FakeBody> bodies(1000);
+  for (std::size_t i = 0; i < bodies.size(); i++) bodies[i] = {"arm" + std::to_string(i), 17};
+  return test_world(bodies);
 }
 
 void osc_validate(benchmark::State& state) {
@@ -102,9 +107,7 @@ BENCHMARK(osc_burst)
 
 // a frame of 1000 bodies of 17 joints: numbers written
 void osc_frame_fill(benchmark::State& state) {
-  std::vector<FakeBody> bodies;
-  for (int i = 0; i < 1000; i++) bodies.push_back({"arm" + std::to_string(i), 17});
-  const Snapshot s = test_world(bodies);
+  const Snapshot s = thousand_arms();
   StreamFrame frame(kTestOffsets);
   frame.lay_out(s.roster, {});
   for (auto _ : state) {
@@ -118,10 +121,8 @@ BENCHMARK(osc_frame_fill)->Unit(benchmark::kMicrosecond);
 
 // laid out anew, as after a body came or went
 void osc_frame_lay_out(benchmark::State& state) {
-  std::vector<FakeBody> bodies;
-  for (int i = 0; i < 1000; i++) bodies.push_back({"arm" + std::to_string(i), 17});
-  const Snapshot a = test_world(bodies);
-  const Snapshot b = test_world(bodies);
+  const Snapshot a = thousand_arms();
+  const Snapshot b = thousand_arms();
   StreamFrame frame(kTestOffsets);
   for (auto _ : state) {
     frame.lay_out(a.roster, {});
@@ -133,9 +134,7 @@ BENCHMARK(osc_frame_lay_out)->Unit(benchmark::kMicrosecond);
 // the whole frame, sent over loopback to a client that reads in a thread of its own (range(2) 1) or to nobody (0);
 // range(0): bundle bytes, range(1): whether the kernel may cut
 void osc_frame_send(benchmark::State& state) {
-  std::vector<FakeBody> bodies;
-  for (int i = 0; i < 1000; i++) bodies.push_back({"arm" + std::to_string(i), 17});
-  const Snapshot s = test_world(bodies);
+  const Snapshot s = thousand_arms();
   StreamTarget wish;
   wish.bundle = static_cast<int>(state.range(0));
   StreamFrame frame(kTestOffsets);

@@ -32,6 +32,7 @@ void require(bool condition) {
 
 }  // namespace
 
+// NOLINTNEXTLINE(readability-identifier-naming): libFuzzer's name
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* bytes, std::size_t size) {
   static Desk& desk = *new Desk;  // lives as long as the process
   const auto* data = reinterpret_cast<const char*>(bytes);

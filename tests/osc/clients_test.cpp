@@ -1,12 +1,12 @@
 // Real clients: liblo's oscsend plays a running Network, its oscdump reads the streams.
 #include <fcntl.h>
 #include <gtest/gtest.h>
-#include <signal.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
 #include <array>
 #include <chrono>
+#include <csignal>
 #include <string>
 #include <vector>
 
@@ -27,6 +27,7 @@ class Child {
     EXPECT_EQ(pipe2(ends.data(), O_CLOEXEC), 0);
     // everything that allocates comes before the fork: other threads may hold the allocator's lock
     std::vector<char*> arguments;
+    arguments.reserve(words.size() + 1);
     for (std::string& w : words) arguments.push_back(w.data());
     arguments.push_back(nullptr);
     pid_ = fork();
@@ -65,7 +66,7 @@ class Child {
       text_.append(more.data(), static_cast<std::size_t>(size));
     }
     const std::size_t at = text_.find('\n');
-    const std::string first = text_.substr(0, at);
+    std::string first = text_.substr(0, at);
     text_.erase(0, at + 1);
     return first;
   }

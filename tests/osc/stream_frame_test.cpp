@@ -93,8 +93,8 @@ TEST(StreamFrame, BodiesByPatternAndThoseWithJoints) {
 // 17 joints, names of six letters: 288, 372 and 292 bytes; a bundle of 1472 holds four, three and four, and what is
 // left of one stream shares its bundle with the next
 TEST(StreamFrame, BundlesHoldWholeMessages) {
-  std::vector<FakeBody> bodies;
-  for (int i = 0; i < 9; i++) bodies.push_back({"body_" + std::to_string(i), 17});
+  std::vector<FakeBody> bodies(9);
+  for (std::size_t i = 0; i < bodies.size(); i++) bodies[i] = {"body_" + std::to_string(i), 17};
   const Snapshot s = test_world(bodies);
   StreamTarget wish;
   wish.bundle = 1472;

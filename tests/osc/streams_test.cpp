@@ -46,7 +46,7 @@ TEST(Streams, OneFrameAPeriodWithoutDrift) {
   const std::int64_t begin = desk.hand.ns;
   for (int i = 0; i < 601; i++) {
     desk.wait_and_send();
-    desk.hand.ns += i % 7 * 1'000'000;  // the loop had other things to do
+    desk.hand.ns += i % 7 * std::int64_t{1'000'000};  // the loop had other things to do
   }
   EXPECT_EQ(desk.sent(), 601u);
   desk.hand.ns += desk.streams.wait().value();
@@ -157,7 +157,7 @@ TEST(Batch, DatagramsArriveWhole) {
 TEST(Batch, ErrorIsAnAnswer) {
   const Socket sender = std::move(open_udp({}).value());
   bool segmentation = true;
-  const std::string bytes(2 * 65508, 'x');  // larger than UDP carries
+  const std::string bytes(std::size_t{2} * 65508, 'x');  // larger than UDP carries
   const std::vector<std::uint32_t> sizes = {65508, 65508};
   const BatchResult result = send_batch(sender.fd(), {0x7f000001, 9}, bytes, sizes, segmentation);
   EXPECT_EQ(result.sent, 0u);
