@@ -35,7 +35,9 @@ std::string find_scene(std::string_view name, std::vector<std::string>& looked) 
   std::error_code fault;
   for (const fs::path& place : places) {
     if (fs::is_regular_file(place, fault)) return place.string();
-    looked.push_back(fs::absolute(place, fault).lexically_normal().string());
+    // called from the data's own folder, both places are one
+    const std::string whole = fs::absolute(place, fault).lexically_normal().string();
+    if (looked.empty() || looked.back() != whole) looked.push_back(whole);
   }
   return {};
 }

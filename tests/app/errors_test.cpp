@@ -82,7 +82,7 @@ void write_inputs(const Folder& folder) {
   folder.file("typo.lua", "sim.gravty = vec3(0, 0, 0)\n");
   folder.file("erring.lua", "sim:on_step(function() error('oh') end)\n");
   folder.file("endless.lua", "while true do end\n");
-  folder.file("stuck.lua", "sim:at(0, function() while true do end end)\n");
+  folder.file("stuck.lua", "sim:on_step(function() warn('round and round') while true do end end)\n");
   folder.file("broken.urdf", "<robot name='r'><link name='a'>");
 }
 
@@ -149,8 +149,8 @@ TEST(Errors, EachRefusalIsAsTheTableSays) {
 // the constant pieces of the texts that a source file refuses with
 std::vector<std::string> refusal_texts(const std::string& source) {
   std::vector<std::string> texts;
-  static const std::regex kRefusal(
-      R"re((Error\{|fail\(k|leave\(|usage_text|no_scene|mistyped_command|stderr, "limber: [a-z'])[^;]*;)re");
+  // a text may hold a semicolon: a statement ends with the line
+  static const std::regex kRefusal(R"re((Error\{|fail\(k|leave\(|return fmt::format\(|return ")[\s\S]*?;\n)re");
   static const std::regex kLiteral(R"re("((?:[^"\\]|\\.)*)")re");
   for (std::sregex_iterator at(source.begin(), source.end(), kRefusal), end; at != end; ++at) {
     const std::string statement = at->str();
@@ -177,6 +177,9 @@ TEST(Errors, NoRefusalIsMissingInTheTable) {
   std::size_t found = 0;
   for (const auto& entry : std::filesystem::directory_iterator(LIMBER_SOURCE_DIR "/src/app")) {
     if (entry.path().extension() != ".cpp") continue;
+    // what these write is their answer; what they refuse with comes from others
+    const std::string name = entry.path().stem().string();
+    if (name == "describe" || name == "doctor" || name == "inspect" || name.starts_with("bench_")) continue;
     for (const std::string& text : refusal_texts(read_file(entry.path()))) {
       found++;
       EXPECT_NE(all.find(text), std::string::npos)
@@ -187,9 +190,12 @@ TEST(Errors, NoRefusalIsMissingInTheTable) {
 }
 
 TEST(Errors, APlantedRefusalIsFound) {
-  EXPECT_EQ(refusal_texts(R"(if (x) return fail(kInput, fmt::format("the {} is far too blue for {}", a, b));)"),
-            std::vector<std::string>{" is far too blue for "});
-  EXPECT_TRUE(refusal_texts(R"(finding("ok", "limber", "everything is all right");)").empty());
+  EXPECT_EQ(refusal_texts(R"(if (x) return fail(kInput, fmt::format("the {} is far; too blue for {}", a, b));
+)"),
+            std::vector<std::string>{" is far; too blue for "});
+  EXPECT_TRUE(refusal_texts(R"(finding("ok", "limber", "everything is all right");
+)")
+                  .empty());
 }
 
 }  // namespace
