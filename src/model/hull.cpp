@@ -36,8 +36,8 @@ double thinnest_of(const Extent& e) { return 100 * epsilon_of(e); }
 
 /// The cloud and a copy of it shifted to each side, along the directions in which it has no thickness.
 std::vector<Vec3> thickened(std::span<const Vec3> points, const Extent& extent) {
-  const double t = std::max(1e-3 * extent.size, 1e-4);
   const double least = 2 * thinnest_of(extent);
+  const double t = std::max({1e-3 * extent.size, 1e-4, 0.75 * thinnest_of(extent)});
   const Vec3 base = points[0];
   const auto farthest = [&](const auto& measure) {
     return *std::max_element(points.begin(), points.end(),

@@ -22,8 +22,8 @@ struct HullLimits {
 };
 
 /// The hull of finite points; points within a millionth of the size inside it don't count as vertices. Flat, straight
-/// and single-point clouds become thin solids (0.1 % of the size, at least 0.1 mm, to each side), so that the result
-/// always has a volume. Empty for no points. [any]
+/// and single-point clouds become thin solids (0.1 % of the size to each side, at least 0.1 mm and what single
+/// precision tells apart), so that the result always has a volume. Empty for no points. [any]
 Hull convex_hull(std::span<const Vec3> points);
 
 /// Vertices of the hull, the farthest from what is there first, until the limits are met. Deterministic. [any]

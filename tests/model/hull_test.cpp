@@ -63,7 +63,7 @@ double farthest_outside(const Hull& hull, const std::vector<Vec3>& points) {
 TEST(Hull, OfACubeWithPointsInsideAndOnItsFacesIsTheCube) {
   std::vector<Vec3> points = cloud(1, 500);
   for (int x = 0; x <= 10; ++x) {
-    for (int y = 0; y <= 10; ++y) points.push_back({x / 5.0 - 1, y / 5.0 - 1, 1});
+    for (int y = 0; y <= 10; ++y) points.emplace_back(x / 5.0 - 1, y / 5.0 - 1, 1);
   }
   const test::Solid cube = test::box({2, 2, 2});
   points.insert(points.end(), cube.vertices.begin(), cube.vertices.end());
@@ -91,7 +91,7 @@ TEST(Hull, OfASphereHasItsVolume) {
   for (int i = 0; i < 5000; ++i) {
     const double z = 1 - (2 * i + 1) / 5000.0;
     const double r = std::sqrt(1 - z * z);
-    points.push_back({r * std::cos(golden * i), r * std::sin(golden * i), z});
+    points.emplace_back(r * std::cos(golden * i), r * std::sin(golden * i), z);
   }
   const Hull hull = convex_hull(points);
   EXPECT_EQ(hull.vertices.size(), 5000u);
@@ -114,6 +114,16 @@ TEST(Hull, FlatStraightAndSinglePointsBecomeThinSolids) {
   const Hull dot = convex_hull(point);
   EXPECT_NEAR(solid_of(dot.vertices, dot.triangles).mass, 8e-12, 1e-14);
   EXPECT_TRUE(convex_hull(std::vector<Vec3>{}).vertices.empty());
+}
+
+TEST(Hull, FarAwayCloudsSmallerThanTheNoiseStillHaveAVolume) {
+  for (const double away : {1.0, 100.0, 1e4, 1e6}) {
+    std::vector<Vec3> points = cloud(5, 50);
+    for (Vec3& p : points) p = 0.01 * p + Vec3(away, -away, away);
+    const Hull hull = convex_hull(points);
+    EXPECT_GE(hull.vertices.size(), 8u) << away;
+    EXPECT_GT(solid_of(hull.vertices, hull.triangles).mass, 0) << away;
+  }
 }
 
 TEST(Hull, NearlyFlatAndRepeatedPointsDoNotBreakIt) {

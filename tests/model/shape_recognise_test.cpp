@@ -49,7 +49,7 @@ TEST(ShapeRecognise, AnUprightBoxKeepsItsAxes) {
 TEST(ShapeRecognise, FinelyMeshedBoxes) {
   test::Solid mesh = test::box({1, 1, 2});
   for (int i = 1; i < 20; ++i) {
-    for (int k = 1; k < 20; ++k) mesh.vertices.push_back({i / 20.0 - 0.5, k / 20.0 - 0.5, 1});
+    for (int k = 1; k < 20; ++k) mesh.vertices.emplace_back(i / 20.0 - 0.5, k / 20.0 - 0.5, 1);
   }
   const std::optional<PlacedShape> found = recognised(mesh);
   ASSERT_TRUE(found);

@@ -48,14 +48,15 @@ inline Solid box(const Vec3& size) {
 inline Solid turned(const std::vector<std::pair<double, double>>& profile, unsigned around) {
   Solid s;
   const auto rings = static_cast<unsigned>(profile.size()) - 2;
-  s.vertices.push_back({0, 0, profile.front().second});
+  s.vertices.emplace_back(0, 0, profile.front().second);
   for (unsigned r = 1; r <= rings; ++r) {
     for (unsigned i = 0; i < around; ++i) {
       const double angle = 2 * kPi * i / around;
-      s.vertices.push_back({profile[r].first * std::cos(angle), profile[r].first * std::sin(angle), profile[r].second});
+      s.vertices.emplace_back(profile[r].first * std::cos(angle), profile[r].first * std::sin(angle),
+                              profile[r].second);
     }
   }
-  s.vertices.push_back({0, 0, profile.back().second});
+  s.vertices.emplace_back(0, 0, profile.back().second);
   const unsigned top = static_cast<unsigned>(s.vertices.size()) - 1;
   for (unsigned i = 0; i < around; ++i) {
     const unsigned next = (i + 1) % around;
