@@ -226,6 +226,7 @@ void Body::build_copy(const Body& source) {
     copy_values(from->id(), joint.id(), Joint::table());
     joint.effect_limits();
     joint.constraint().reset(from->constraint().angles());
+    joint.constraint().tell_like(from->constraint());
     if (from->motor() == nullptr) continue;
     motors_.push_back(std::make_unique<Motor>(joint, motor_group_));
     if (joint.spec().mimic) followers_.push_back(motors_.back().get());
@@ -292,13 +293,21 @@ void Body::settle_joints() {
 
 void Body::push_forces() {
   for (Motor* motor : followers_) motor->follow();
+  if (!std::exchange(forced_, false)) return;
   for (const auto& part : parts_) part->push_forces();
+}
+
+void Body::take_good_pose() {
+  last_good_.resize(parts_.size());
+  for (std::size_t i = 0; i < parts_.size(); i++) last_good_[i] = parts_[i]->pose();
 }
 
 void Body::tell() {
   for (const auto& part : parts_) part->tell();
-  for (const auto& joint : joints_) joint->tell();
-  for (const auto& motor : motors_) motor->tell();
+  for (const auto& joint : joints_) {
+    joint->tell();
+    if (Motor* motor = joint->motor()) motor->tell();  // reads what the joint has just read
+  }
 }
 
 std::uint64_t Body::state_hash(std::uint64_t hash) const {

@@ -72,9 +72,13 @@ class Body {
 
   /// A part's pose was set by hand: joints read it anew before the next step.
   void note_moved() { moved_ = true; }
+  /// A force or impulse waits in a part for the next step.
+  void note_force() { forced_ = true; }
 
   void push_forces();
   void tell();
+  /// The present pose is what health goes back to.
+  void take_good_pose();
   std::uint64_t state_hash(std::uint64_t start) const;
 
  private:
@@ -108,6 +112,7 @@ class Body {
   std::size_t entered_parts_ = 0;  // the first so many are in Bullet's world
   std::size_t entered_joints_ = 0;
   bool moved_ = false;
+  bool forced_ = false;
   bool fresh_ = true;  // made since the last step: where it is then is its start pose
 
   // health: the pose after the last good tick, and whether it was needed already

@@ -118,10 +118,10 @@ Joint::Joint(Body& body, NodeId group, std::string name, Part& parent, Part& chi
       id_(body.store().add(table(), group, std::move(name), this)),
       parent_(parent),
       child_(child),
-      spec_(spec),
       constraint_(std::make_unique<JointConstraint>(parent.rigid(), child.rigid(),
                                                     to_bt(parent.geometry()->frame.inverse() * spec.frame_in_parent),
-                                                    to_bt(child.geometry()->frame.inverse() * spec.frame_in_child))) {
+                                                    to_bt(child.geometry()->frame.inverse() * spec.frame_in_child))),
+      spec_(spec) {
   Store& store = body_.store();
   for (int axis = 0; axis < 6; axis++) {
     const auto half = static_cast<std::size_t>(axis / 3);
@@ -156,23 +156,24 @@ double Joint::value() const { return own_axis() < 0 ? 0 : constraint_->value(own
 
 void Joint::effect_limits() {
   const Store& store = body_.store();
-  bool opened = false;
+  const unsigned before = open_;
+  unsigned open = 0;
   for (int axis = 0; axis < 6; axis++) {
     const auto half = static_cast<std::size_t>(axis / 3);
     const auto number = [&](const std::array<const Row*, 2>& rows) {
       return static_cast<float>(store.values(id_, *rows[half])[axis % 3]);
     };
     AxisSettings settings = constraint_->axis(axis);
-    const bool was_locked = settings.locked();
     settings.lower = number(limit_rows().lower);
     settings.upper = number(limit_rows().upper);
     settings.stop_erp = number(limit_rows().stop_erp);
     settings.stop_cfm = number(limit_rows().stop_cfm);
     settings.friction = axis == own_axis() ? static_cast<float>(spec_.friction) : 0;
     constraint_->set_axis(axis, settings);
-    opened = opened || (was_locked && !settings.locked());
+    if (!settings.locked()) open |= 1u << axis;
   }
-  if (opened && motor_ != nullptr) motor_->effect_axes();
+  open_ = static_cast<std::uint8_t>(open);
+  if ((open & ~before) != 0 && motor_ != nullptr) motor_->effect_axes();
 }
 
 void Joint::read_anew() {
@@ -192,7 +193,7 @@ void Joint::tell() {
   const btTransform& parent = parent_.rigid().getCenterOfMassTransform();
   const btTransform& frame = constraint_->frame_in_parent();
   const int own = own_axis();
-  live[rows.value->offset] = value();
+  live[rows.value->offset] = own < 0 ? 0 : constraint_->value(own);
   live[rows.speed->offset] = own < 0 ? 0 : constraint_->rate(own);
   put(live + rows.angles->offset, constraint_->angles());
   put(live + rows.offsets->offset, constraint_->offsets());

@@ -56,6 +56,8 @@ class Joint {
 
   /// 0..2 linear x y z, 3..5 angular x y z; -1: a fixed joint has none.
   int own_axis() const;
+  /// Whether an axis moves at all, by the limits in force.
+  bool is_open(int axis) const { return (open_ >> axis & 1) != 0; }
   /// Own axis: rad or m.
   double value() const;
 
@@ -73,15 +75,17 @@ class Joint {
   void effect_limits();
 
  private:
+  // what every tick needs stands first
   Body& body_;
   NodeId id_;
+  std::uint8_t open_ = 0;  // the axes that are not locked, a bit each
+  bool in_world_ = false;
+  Motor* motor_ = nullptr;
   Part& parent_;
   Part& child_;
-  JointSpec spec_;
   std::unique_ptr<JointConstraint> constraint_;
-  Motor* motor_ = nullptr;
+  JointSpec spec_;
   Vec3 start_angles_{0};
-  bool in_world_ = false;
 };
 
 }  // namespace limber

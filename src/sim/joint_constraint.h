@@ -96,6 +96,11 @@ class JointConstraint : public btTypedConstraint {
   /// The spring in force at the last internal step: stiffness is held below inertia/(16 h²), 0 where no spring acts.
   double stiffness_applied(int axis) const;
   double damping_applied(int axis) const;
+  /// Tells what the other told of its last step, until the next one: a copy is like its original.
+  void tell_like(const JointConstraint& other) {
+    applied_ = other.applied_;
+    stiffness_applied_ = other.stiffness_applied_;
+  }
   /// Inertia that a spring on this axis works on, the locked axes held: kg or kg·m². It says how many substeps
   /// would lift the cap: h <= sqrt(inertia/(16·stiffness)).
   double effective_inertia(int axis) const;

@@ -18,7 +18,7 @@ using namespace rows;
 // the rows of one kind for linear and angular axes
 struct AxisRows {
   std::array<const Row*, 2> active, velocity, max_force, servo_active, servo_position, spring_active, rest, stiffness,
-      damping, stiffness_applied, damping_applied;
+      damping;
   const Row *bounce, *passive_damping, *applied_force, *applied_torque;
 };
 
@@ -33,8 +33,6 @@ const AxisRows& axis_rows() {
                               {at("linear_spring_rest_length"), at("angular_spring_rest_length")},
                               {at("linear_spring_stiffness"), at("angular_spring_stiffness")},
                               {at("linear_spring_damping"), at("angular_spring_damping")},
-                              {at("linear_spring_stiffness_applied"), at("angular_spring_stiffness_applied")},
-                              {at("linear_spring_damping_applied"), at("angular_spring_damping_applied")},
                               at("bounce"),
                               at("damping"),
                               at("applied_force"),
@@ -81,9 +79,14 @@ void add_axes(std::vector<Row>& out, const std::string& side, bool angular) {
       axis_numbers(side + "_spring_rest_length", length, 0, -1e4, 1e4, "Where a spring rests " + where + "."));
   out.push_back(axis_numbers(side + "_spring_stiffness", stiffness, 0, 0, 1e6, "Spring stiffness " + where + "."));
   out.push_back(axis_numbers(side + "_spring_damping", damping, 0, 0, 1e6, "Spring damping " + where + "."));
-  out.push_back(applied(side + "_spring_stiffness_applied", stiffness,
-                        "Stiffness in force " + where + ", held stable for the step."));
-  out.push_back(applied(side + "_spring_damping_applied", damping, "Spring damping in force " + where + "."));
+  Row stiff = readout(vec3(side + "_spring_stiffness_applied", stiffness, {0, 0, 0}, -kUnbounded, kUnbounded,
+                           "Stiffness in force " + where + ", held stable for the step."));
+  Row damp = readout(vec3(side + "_spring_damping_applied", damping, {0, 0, 0}, -kUnbounded, kUnbounded,
+                          "Spring damping in force " + where + "."));
+  out.push_back(angular ? view<&Motor::read_angular_stiffness>(std::move(stiff))
+                        : view<&Motor::read_linear_stiffness>(std::move(stiff)));
+  out.push_back(angular ? view<&Motor::read_angular_damping>(std::move(damp))
+                        : view<&Motor::read_linear_damping>(std::move(damp)));
 }
 
 }  // namespace
@@ -132,14 +135,12 @@ Motor::~Motor() {
 }
 
 MotorMode Motor::mode(int axis) const {
-  const Store& store = joint_.body().store();
+  const AxisRows& rows = axis_rows();
+  const double* kept = std::as_const(joint_.body().store()).kept_block(id_) + axis % 3;
   const auto half = static_cast<std::size_t>(axis / 3);
-  const auto flag = [&](const std::array<const Row*, 2>& rows) {
-    return store.values(id_, *rows[half])[axis % 3] != 0;
-  };
-  if (flag(axis_rows().spring_active)) return MotorMode::spring;
-  if (!flag(axis_rows().active)) return MotorMode::off;
-  return flag(axis_rows().servo_active) ? MotorMode::servo : MotorMode::spin;
+  if (kept[rows.spring_active[half]->offset] != 0) return MotorMode::spring;
+  if (kept[rows.active[half]->offset] == 0) return MotorMode::off;
+  return kept[rows.servo_active[half]->offset] != 0 ? MotorMode::servo : MotorMode::spin;
 }
 
 void Motor::set_own(const Row& linear_row, const Row& angular_row, double value) {
@@ -187,8 +188,8 @@ void Motor::effect_axes() {
     const auto number = [&](const std::array<const Row*, 2>& r) {
       return static_cast<float>(kept[r[half]->offset + static_cast<std::uint32_t>(axis % 3)]);
     };
+    if (!joint_.is_open(axis)) continue;  // its drive comes when its limits open
     AxisSettings settings = constraint.axis(axis);
-    if (settings.locked()) continue;  // its drive comes when its limits open
     settings.drive = static_cast<AxisDrive>(mode(axis));
     springs_ = springs_ || settings.drive == AxisDrive::spring;
     settings.velocity = number(rows.velocity);
@@ -217,7 +218,8 @@ void Motor::say_cap() {
   const Store& store = joint_.body().store();
   for (int axis = 0; axis < 6; axis++) {
     const double wanted = store.values(id_, *axis_rows().stiffness[static_cast<std::size_t>(axis / 3)])[axis % 3];
-    if (mode(axis) != MotorMode::spring || joint_.constraint().stiffness_applied(axis) >= 0.999 * wanted) continue;
+    if (mode(axis) != MotorMode::spring || !joint_.is_open(axis)) continue;
+    if (joint_.constraint().stiffness_applied(axis) >= 0.999 * wanted) continue;
     const double h = std::sqrt(joint_.constraint().effective_inertia(axis) / (16 * wanted));
     const double substeps = std::ceil(joint_.body().world().timestep() / std::max(h, 1e-9));
     log_warning("motor '{}/{}': a spring of {} is held at {:.4g} to stay stable; about {} substeps would allow it",
@@ -238,19 +240,30 @@ void Motor::tell() {
     told_force[i] = force[i];
     told_torque[i] = torque[i];
   }
-  const bool told_springs = std::exchange(told_springs_, springs_);
-  if (!springs_ && !told_springs) return;
-  bool capped = false;
+  if (!springs_ || said_cap_) return;
   for (int axis = 0; axis < 6; axis++) {
-    const auto half = static_cast<std::size_t>(axis / 3);
-    const auto i = static_cast<std::uint32_t>(axis % 3);
-    const double stiffness = constraint.stiffness_applied(axis);
-    live[rows.stiffness_applied[half]->offset + i] = stiffness;
-    live[rows.damping_applied[half]->offset + i] = constraint.damping_applied(axis);
-    capped = capped || (constraint.axis(axis).drive == AxisDrive::spring &&
-                        stiffness < 0.999 * static_cast<double>(constraint.axis(axis).stiffness));
+    const AxisSettings& settings = constraint.axis(axis);
+    if (settings.drive == AxisDrive::spring && joint_.is_open(axis) &&
+        constraint.stiffness_applied(axis) < 0.999 * static_cast<double>(settings.stiffness)) {
+      return say_cap();
+    }
   }
-  if (capped) say_cap();
+}
+
+void Motor::read_linear_stiffness(double* out) const {
+  for (int axis = 0; axis < 3; axis++) out[axis] = joint_.constraint().stiffness_applied(axis);
+}
+
+void Motor::read_angular_stiffness(double* out) const {
+  for (int axis = 0; axis < 3; axis++) out[axis] = joint_.constraint().stiffness_applied(3 + axis);
+}
+
+void Motor::read_linear_damping(double* out) const {
+  for (int axis = 0; axis < 3; axis++) out[axis] = joint_.constraint().damping_applied(axis);
+}
+
+void Motor::read_angular_damping(double* out) const {
+  for (int axis = 0; axis < 3; axis++) out[axis] = joint_.constraint().damping_applied(3 + axis);
 }
 
 void Motor::read_mode(double* out) const {

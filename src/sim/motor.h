@@ -37,6 +37,10 @@ class Motor {
 
   // What the rows do and read; public because the table, which is no member, names them.
   void effect_axes();
+  void read_linear_stiffness(double* out) const;
+  void read_angular_stiffness(double* out) const;
+  void read_linear_damping(double* out) const;
+  void read_angular_damping(double* out) const;
   void read_mode(double* out) const;
   void write_mode(const double* in);
   void read_target(double* out) const;
@@ -52,8 +56,7 @@ class Motor {
 
   Joint& joint_;
   NodeId id_;
-  bool springs_ = false;      // one is in force
-  bool told_springs_ = true;  // the live block may hold what one applies
+  bool springs_ = false;  // one is in force
   bool said_contradiction_ = false;
   bool said_cap_ = false;
 };

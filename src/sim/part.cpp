@@ -148,21 +148,34 @@ void Part::stand_like(const Part& other) {
   rigid_->updateInertiaTensor();
 }
 
-void Part::apply_force_at(const Vec3& force, const Vec3& at) {
+void Part::apply_force(const Vec3& force) {
   force_ += force;
+  body_.note_force();
+}
+
+void Part::apply_torque(const Vec3& torque) {
+  torque_ += torque;
+  body_.note_force();
+}
+
+void Part::apply_impulse(const Vec3& impulse) {
+  impulse_ += impulse;
+  body_.note_force();
+}
+
+void Part::apply_force_at(const Vec3& force, const Vec3& at) {
+  apply_force(force);
   torque_ += glm::cross(at - center(), force);
 }
 
 void Part::apply_impulse_at(const Vec3& impulse, const Vec3& at) {
-  impulse_ += impulse;
+  apply_impulse(impulse);
   angular_impulse_ += glm::cross(at - center(), impulse);
 }
 
 void Part::clear_forces() { force_ = torque_ = impulse_ = angular_impulse_ = Vec3(0); }
 
 void Part::push_forces() {
-  const Vec3 none(0);
-  if (force_ == none && torque_ == none && impulse_ == none && angular_impulse_ == none) return;
   if (is_static_) return clear_forces();
   // more than any part stands, but a number still: what is none would spread to all that the part touches
   const Vec3 most(1e15);

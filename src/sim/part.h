@@ -49,10 +49,10 @@ class Part {
   void set_start_pose(const Pose& pose) { start_ = pose; }
 
   /// Forces act for the whole coming tick on each internal step, then end. `at`: a world point.
-  void apply_force(const Vec3& force) { force_ += force; }
+  void apply_force(const Vec3& force);
   void apply_force_at(const Vec3& force, const Vec3& at);
-  void apply_torque(const Vec3& torque) { torque_ += torque; }
-  void apply_impulse(const Vec3& impulse) { impulse_ += impulse; }
+  void apply_torque(const Vec3& torque);
+  void apply_impulse(const Vec3& impulse);
   void apply_impulse_at(const Vec3& impulse, const Vec3& at);
   void clear_forces();
 

@@ -193,9 +193,11 @@ void World::step() {
   store_.tell(id_, *world_rows().time)[0] += timestep();
   store_.tell(id_, *world_rows().tick)[0] = static_cast<double>(tick_);
   for (const auto& body : bodies_) {
-    if (body->in_world()) body->tell();
+    if (!body->in_world()) continue;
+    body->tell();
+    if (!body->broken_) body->take_good_pose();
   }
-  check_health();
+  if (std::exchange(healed_, false)) settle_healed();
   times_ = {before - start, after - before, seconds_now() - after};
 }
 
@@ -245,6 +247,7 @@ void World::heal(Body& body, const Part& part, const char* what) {
     each.rigid().forceActivationState(DISABLE_DEACTIVATION);
   }
   for (const auto& joint : body.joints_) joint->read_anew();
+  healed_ = true;
   if (std::exchange(body.broken_, true)) return;  // said in this tick
   health_events_++;
   if (std::exchange(body.restored_once_, true)) {
@@ -257,14 +260,9 @@ void World::heal(Body& body, const Part& part, const char* what) {
   }
 }
 
-void World::check_health() {
-  store_.apply_marks();
-  for (const auto& body : bodies_) {
-    body->settle_joints();
-    if (!body->in_world() || std::exchange(body->broken_, false)) continue;
-    body->last_good_.resize(body->parts_.size());
-    for (std::size_t i = 0; i < body->parts_.size(); i++) body->last_good_[i] = body->parts_[i]->pose();
-  }
+void World::settle_healed() {
+  settle();
+  for (const auto& body : bodies_) body->broken_ = false;
 }
 
 std::uint64_t World::state_hash() const {

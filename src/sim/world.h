@@ -86,7 +86,7 @@ class World {
   friend class Body;
   void effect_gravity();
   void effect_solver();
-  void check_health();
+  void settle_healed();
   void heal(Body& body, const Part& part, const char* what);
   static void after_internal_step(btDynamicsWorld* bullet, btScalar h);
   Result<void> name_is_free(NodeId group, std::string_view kind, std::string_view name) const;
@@ -107,6 +107,7 @@ class World {
   std::uint64_t tick_ = 0;
   std::uint64_t health_events_ = 0;
   bool reset_asked_ = false;
+  bool healed_ = false;  // a body, in this tick
 };
 
 }  // namespace limber

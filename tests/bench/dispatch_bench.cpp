@@ -1,0 +1,61 @@
+// How many messages a second the dispatch carries out, by the ways that a thing can be named.
+#include <benchmark/benchmark.h>
+
+#include <string>
+
+#include "engine/dispatch.h"
+
+namespace limber {
+namespace {
+
+// sixteen arms of six joints, as the default scene has them
+struct Arms {
+  Store store;
+  World world{store};
+  Dispatch dispatch{world};
+
+  Arms() {
+    ShapeModel ball;
+    ball.kind = ShapeKind::sphere;
+    ball.radius = 0.05;
+    Shape& shape = **world.add_shape("ball", ball);
+    for (int b = 1; b <= 16; b++) {
+      Body& body = **world.add_body("arm" + std::to_string(b));
+      (void)body.add_part("base", shape, 0, {{1.0 * b, 0, 0}, quat_identity()});
+      for (int p = 1; p <= 6; p++) {
+        const std::string name = "link_" + std::to_string(p);
+        Part& part = **body.add_part(name, shape, 1, {{1.0 * b, 0, 0.3 * p}, quat_identity()});
+        const std::string joint = "joint_" + std::to_string(p);
+        Part& parent = *body.parts()[static_cast<std::size_t>(p - 1)];
+        (void)body.add_motor(
+            **body.add_joint(joint, parent, part, JointType::revolute, part.pose().position, {0, 1, 0}));
+      }
+    }
+    world.settle();
+  }
+};
+
+void carry_out(benchmark::State& state, const Message& message) {
+  Arms arms;
+  for (auto _ : state) {
+    Outcome outcome = arms.dispatch.execute(message);
+    benchmark::DoNotOptimize(outcome);
+    if (outcome.kind != Outcome::Kind::applied) state.SkipWithError(outcome.error.c_str());
+  }
+  state.SetItemsProcessed(state.iterations());
+}
+
+const Arg kBody = Arg::of("arm7");
+const Arg kJoint = Arg::of("joint_3");
+
+BENCHMARK_CAPTURE(carry_out, world, Message{"/physics/sim/gravity", {Arg::of(-1.6)}});
+BENCHMARK_CAPTURE(carry_out, body_and_part, Message{"/physics/part/mass", {kBody, Arg::of("link_3"), Arg::of(0.3)}});
+BENCHMARK_CAPTURE(carry_out, body_and_motor_own_axis,
+                  Message{"/physics/motor/angularservoposition", {kBody, kJoint, Arg::of(0.3)}});
+BENCHMARK_CAPTURE(carry_out, path, Message{"/physics/body/arm7/motor/joint_3/angular_servo_position", {Arg::of(0.3)}});
+BENCHMARK_CAPTURE(carry_out, one_body, Message{"/physics/part/friction", {kBody, Arg::of(0.3)}});
+BENCHMARK_CAPTURE(carry_out, all_bodies, Message{"/physics/part/friction", {Arg::of(0.3)}});
+BENCHMARK_CAPTURE(carry_out, pattern_path, Message{"/physics/body/arm*/part/link_3/friction", {Arg::of(0.3)}});
+
+}  // namespace
+}  // namespace limber
