@@ -226,7 +226,6 @@ void Body::build_copy(const Body& source) {
     copy_values(from->id(), joint.id(), Joint::table());
     joint.effect_limits();
     joint.constraint().reset(from->constraint().angles());
-    joint.constraint().tell_like(from->constraint());
     if (from->motor() == nullptr) continue;
     motors_.push_back(std::make_unique<Motor>(joint, motor_group_));
     if (joint.spec().mimic) followers_.push_back(motors_.back().get());
@@ -306,7 +305,7 @@ void Body::tell() {
   for (const auto& part : parts_) part->tell();
   for (const auto& joint : joints_) {
     joint->tell();
-    if (Motor* motor = joint->motor()) motor->tell();  // reads what the joint has just read
+    if (joint->constraint().holds_spring() && joint->motor() != nullptr) joint->motor()->say_cap();
   }
 }
 

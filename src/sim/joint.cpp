@@ -15,13 +15,13 @@ namespace {
 using namespace rows;
 
 struct LiveRows {
-  const Row *value, *speed, *angles, *offsets, *relrot, *position, *rotation, *axis;
+  const Row *value, *speed, *angles, *offsets, *relrot, *position, *rotation;
 };
 
 const LiveRows& live_rows() {
   static const auto at = [](const char* name) { return &Joint::table().at(name); };
-  static const LiveRows found{at("value"),  at("speed"),    at("angles"),   at("offsets"),
-                              at("relrot"), at("position"), at("rotation"), at("axis")};
+  static const LiveRows found{at("value"),  at("speed"),    at("angles"),  at("offsets"),
+                              at("relrot"), at("position"), at("rotation")};
   return found;
 }
 
@@ -108,7 +108,7 @@ const Table& Joint::table() {
           live(readout(vec3("position", "m", {0, 0, 0}, -kUnbounded, kUnbounded,
                             "The joint's point on the parent's side, world."))),
           live(readout(quat("rotation", "The child's joint frame, world, its own rotation included: x y z w."))),
-          live(readout(vec3("axis", "", {0, 0, 1}, -1, 1, "The own axis, world."))),
+          view<&Joint::read_axis>(readout(vec3("axis", "", {0, 0, 1}, -1, 1, "The own axis, world."))),
       });
   return table;
 }
@@ -205,7 +205,11 @@ void Joint::tell() {
   rotation[1] = q.y;
   rotation[2] = q.z;
   rotation[3] = q.w;
-  put(live + rows.axis->offset, from_bt(parent.getBasis() * frame.getBasis().getColumn(2)));
+}
+
+void Joint::read_axis(double* out) const {
+  const btMatrix3x3& frame = constraint_->frame_in_parent().getBasis();
+  put(out, from_bt(parent_.rigid().getCenterOfMassTransform().getBasis() * frame.getColumn(2)));
 }
 
 }  // namespace limber

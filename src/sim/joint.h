@@ -73,6 +73,7 @@ class Joint {
   void leave();
   /// Limits, ERP and CFM of all axes into the constraint: the effect of their rows.
   void effect_limits();
+  void read_axis(double* out) const;
 
  private:
   // what every tick needs stands first

@@ -61,6 +61,13 @@ void JointConstraint::set_axis(int axis, const AxisSettings& settings) {
   angle -= kTurn * std::round((angle - center) / kTurn);
 }
 
+void JointConstraint::set_goal(int axis, double target, double rest, double velocity) {
+  AxisSettings& mine = axes_[at(axis)];
+  mine.target = tamed(static_cast<float>(target), -1e6f, 1e6f);
+  mine.rest = tamed(static_cast<float>(rest), -1e6f, 1e6f);
+  mine.velocity = tamed(static_cast<float>(velocity), -1e5f, 1e5f);
+}
+
 void JointConstraint::set_frames(const btTransform& frame_in_parent, const btTransform& frame_in_child) {
   frame_a_ = frame_in_parent;
   frame_b_ = frame_in_child;

@@ -55,6 +55,8 @@ class JointConstraint : public btTypedConstraint {
   /// Takes effect at the next internal step; absurd numbers are tamed (positions to 1e6, speeds to 1e5, forces to
   /// 1e12). A free axis that becomes limited takes the turn nearest to its range.
   void set_axis(int axis, const AxisSettings& settings);
+  /// Of these settings only where to and how fast: servo target, spring's rest, velocity.
+  void set_goal(int axis, double target, double rest, double velocity);
   const AxisSettings& axis(int axis) const { return axes_[static_cast<std::size_t>(axis)]; }
   /// Moves the frames (centre-of-mass frames), keeping turns where it can.
   void set_frames(const btTransform& frame_in_parent, const btTransform& frame_in_child);
@@ -96,11 +98,8 @@ class JointConstraint : public btTypedConstraint {
   /// The spring in force at the last internal step: stiffness is held below inertia/(16 h²), 0 where no spring acts.
   double stiffness_applied(int axis) const;
   double damping_applied(int axis) const;
-  /// Tells what the other told of its last step, until the next one: a copy is like its original.
-  void tell_like(const JointConstraint& other) {
-    applied_ = other.applied_;
-    stiffness_applied_ = other.stiffness_applied_;
-  }
+  /// Whether a spring was held below its stiffness at the last internal step.
+  bool holds_spring() const { return holds_spring_; }
   /// Inertia that a spring on this axis works on, the locked axes held: kg or kg·m². It says how many substeps
   /// would lift the cap: h <= sqrt(inertia/(16·stiffness)).
   double effective_inertia(int axis) const;
@@ -187,6 +186,7 @@ class JointConstraint : public btTypedConstraint {
   std::array<float, 6> learnt_inertia_{};
   std::array<float, 6> pair_inertia_{};
   std::array<float, 6> stiffness_applied_{};
+  bool holds_spring_ = false;
   float tick_time_ = 0;
   btScalar h_ = btScalar(1.0 / 240.0);
   btScalar bounce_ = 0;

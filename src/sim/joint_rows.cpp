@@ -83,6 +83,7 @@ void JointConstraint::plan_rows() {
   rows_.clear();
   row_count_ = 0;
   stiffness_applied_.fill(0);
+  holds_spring_ = false;
   // what may give comes first, what must hold comes last: the last row of a sweep is met exactly
   for (int axis = 0; axis < 6; ++axis) {
     if (!axes_[at(axis)].locked()) plan_motion(axis);
@@ -236,6 +237,7 @@ void JointConstraint::plan_spring(int axis) {
   const AxisSettings& s = axes_[at(axis)];
   const btScalar stiffness = capped_stiffness(axis);
   stiffness_applied_[at(axis)] = stiffness;
+  holds_spring_ = holds_spring_ || stiffness < btScalar(0.999) * s.stiffness;
   const btScalar stretch = static_cast<btScalar>(static_cast<double>(s.rest) - value(axis));
   const btScalar impulse = stiffness * stretch * h_;
   if (s.spring_damping > 0) {

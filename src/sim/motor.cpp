@@ -19,7 +19,7 @@ using namespace rows;
 struct AxisRows {
   std::array<const Row*, 2> active, velocity, max_force, servo_active, servo_position, spring_active, rest, stiffness,
       damping;
-  const Row *bounce, *passive_damping, *applied_force, *applied_torque;
+  const Row *bounce, *passive_damping;
 };
 
 const AxisRows& axis_rows() {
@@ -34,10 +34,12 @@ const AxisRows& axis_rows() {
                               {at("linear_spring_stiffness"), at("angular_spring_stiffness")},
                               {at("linear_spring_damping"), at("angular_spring_damping")},
                               at("bounce"),
-                              at("damping"),
-                              at("applied_force"),
-                              at("applied_torque")};
+                              at("damping")};
   return found;
+}
+
+void put(double* to, const Vec3& v) {
+  for (int i = 0; i < 3; i++) to[i] = v[i];
 }
 
 bool same_drive(const AxisSettings& a, const AxisSettings& b) {
@@ -54,8 +56,13 @@ Row axis_numbers(std::string name, const char* unit, double initial, double min,
       effect<&Motor::effect_axes>(vec3(std::move(name), unit, {initial, initial, initial}, min, max, std::move(doc))));
 }
 
+// where an axis is to go, and how fast: what is played at every tick
+Row axis_goals(std::string name, const char* unit, std::string doc) {
+  return axes(effect<&Motor::effect_goals>(vec3(std::move(name), unit, {0, 0, 0}, -1e4, 1e4, std::move(doc))));
+}
+
 Row applied(std::string name, const char* unit, std::string doc) {
-  return live(readout(vec3(std::move(name), unit, {0, 0, 0}, -kUnbounded, kUnbounded, std::move(doc))));
+  return readout(vec3(std::move(name), unit, {0, 0, 0}, -kUnbounded, kUnbounded, std::move(doc)));
 }
 
 // the nine rows of the linear or the angular axes
@@ -67,22 +74,19 @@ void add_axes(std::vector<Row>& out, const std::string& side, bool angular) {
   const char* damping = angular ? "N·m·s/rad" : "N·s/m";
   const std::string where = angular ? "about each axis" : "along each axis";
   out.push_back(axis_flags(side + "_active", "Motor on " + where + ": a spin, or a servo when that is active too."));
-  out.push_back(
-      axis_numbers(side + "_velocity", speed, 0, -1e4, 1e4,
-                   "Speed of a spin " + where + "; how fast a servo may go (0: as fast as its force allows)."));
+  out.push_back(axis_goals(side + "_velocity", speed,
+                           "Speed of a spin " + where + "; how fast a servo may go (0: as fast as its force allows)."));
   out.push_back(
       axis_numbers("max_" + side + "_force", force, 10000, 0, 1e9, "Most that a spin or servo applies " + where + "."));
   out.push_back(axis_flags(side + "_servo_active", "Servo on " + where + " (needs the motor active)."));
-  out.push_back(axis_numbers(side + "_servo_position", length, 0, -1e4, 1e4, "Where a servo goes " + where + "."));
+  out.push_back(axis_goals(side + "_servo_position", length, "Where a servo goes " + where + "."));
   out.push_back(axis_flags(side + "_spring_active", "Spring on " + where + "; spin and servo are off then."));
-  out.push_back(
-      axis_numbers(side + "_spring_rest_length", length, 0, -1e4, 1e4, "Where a spring rests " + where + "."));
+  out.push_back(axis_goals(side + "_spring_rest_length", length, "Where a spring rests " + where + "."));
   out.push_back(axis_numbers(side + "_spring_stiffness", stiffness, 0, 0, 1e6, "Spring stiffness " + where + "."));
   out.push_back(axis_numbers(side + "_spring_damping", damping, 0, 0, 1e6, "Spring damping " + where + "."));
-  Row stiff = readout(vec3(side + "_spring_stiffness_applied", stiffness, {0, 0, 0}, -kUnbounded, kUnbounded,
-                           "Stiffness in force " + where + ", held stable for the step."));
-  Row damp = readout(vec3(side + "_spring_damping_applied", damping, {0, 0, 0}, -kUnbounded, kUnbounded,
-                          "Spring damping in force " + where + "."));
+  Row stiff = applied(side + "_spring_stiffness_applied", stiffness,
+                      "Stiffness in force " + where + ", held stable for the step.");
+  Row damp = applied(side + "_spring_damping_applied", damping, "Spring damping in force " + where + ".");
   out.push_back(angular ? view<&Motor::read_angular_stiffness>(std::move(stiff))
                         : view<&Motor::read_linear_stiffness>(std::move(stiff)));
   out.push_back(angular ? view<&Motor::read_angular_damping>(std::move(damp))
@@ -107,10 +111,10 @@ const Table& Motor::table() {
         number("damping", "N·s/m | N·m·s/rad", 0, 0, 1e6, "Passive damping of every free axis in any mode.")));
     add_axes(list, "linear", false);
     add_axes(list, "angular", true);
-    list.push_back(
-        applied("applied_force", "N", "What motors and springs applied along each axis, mean of the last tick."));
-    list.push_back(
-        applied("applied_torque", "N·m", "What motors and springs applied about each axis, mean of the last tick."));
+    list.push_back(view<&Motor::read_force>(
+        applied("applied_force", "N", "What motors and springs applied along each axis, mean of the last tick.")));
+    list.push_back(view<&Motor::read_torque>(
+        applied("applied_torque", "N·m", "What motors and springs applied about each axis, mean of the last tick.")));
     return Table("motor", "/physics/body/<body>/motor/<motor>", "/physics/motor", std::move(list));
   }();
   return table;
@@ -177,12 +181,10 @@ void Motor::follow() {
 }
 
 void Motor::effect_axes() {
-  // at every tick for every motor that is played: values straight from the block, nothing for what is locked
   const Store& store = joint_.body().store();
   const double* kept = store.kept_block(id_);
   JointConstraint& constraint = joint_.constraint();
   const AxisRows& rows = axis_rows();
-  springs_ = false;
   for (int axis = 0; axis < 6; axis++) {
     const auto half = static_cast<std::size_t>(axis / 3);
     const auto number = [&](const std::array<const Row*, 2>& r) {
@@ -191,7 +193,6 @@ void Motor::effect_axes() {
     if (!joint_.is_open(axis)) continue;  // its drive comes when its limits open
     AxisSettings settings = constraint.axis(axis);
     settings.drive = static_cast<AxisDrive>(mode(axis));
-    springs_ = springs_ || settings.drive == AxisDrive::spring;
     settings.velocity = number(rows.velocity);
     settings.max_force = number(rows.max_force);
     settings.target = number(rows.servo_position);
@@ -203,6 +204,20 @@ void Motor::effect_axes() {
   }
   constraint.set_bounce(store.values(id_, *rows.bounce)[0]);
   constraint.set_damping(store.values(id_, *rows.passive_damping)[0]);
+}
+
+void Motor::effect_goals() {
+  // at every tick for every motor that is played: values straight from the block, nothing for what is locked
+  const double* kept = std::as_const(joint_.body().store()).kept_block(id_);
+  JointConstraint& constraint = joint_.constraint();
+  const AxisRows& rows = axis_rows();
+  for (int axis = 0; axis < 6; axis++) {
+    if (!joint_.is_open(axis)) continue;
+    const auto half = static_cast<std::size_t>(axis / 3);
+    const double* const own = kept + axis % 3;
+    constraint.set_goal(axis, own[rows.servo_position[half]->offset], own[rows.rest[half]->offset],
+                        own[rows.velocity[half]->offset]);
+  }
 }
 
 void Motor::say_contradiction(int axis) {
@@ -228,27 +243,9 @@ void Motor::say_cap() {
   }
 }
 
-void Motor::tell() {
-  double* const live = joint_.body().store().live_block(id_);
-  const JointConstraint& constraint = joint_.constraint();
-  const AxisRows& rows = axis_rows();
-  const Vec3 force = constraint.applied_force();
-  const Vec3 torque = constraint.applied_torque();
-  double* const told_force = live + rows.applied_force->offset;
-  double* const told_torque = live + rows.applied_torque->offset;
-  for (int i = 0; i < 3; i++) {
-    told_force[i] = force[i];
-    told_torque[i] = torque[i];
-  }
-  if (!springs_ || said_cap_) return;
-  for (int axis = 0; axis < 6; axis++) {
-    const AxisSettings& settings = constraint.axis(axis);
-    if (settings.drive == AxisDrive::spring && joint_.is_open(axis) &&
-        constraint.stiffness_applied(axis) < 0.999 * static_cast<double>(settings.stiffness)) {
-      return say_cap();
-    }
-  }
-}
+void Motor::read_force(double* out) const { put(out, joint_.constraint().applied_force()); }
+
+void Motor::read_torque(double* out) const { put(out, joint_.constraint().applied_torque()); }
 
 void Motor::read_linear_stiffness(double* out) const {
   for (int axis = 0; axis < 3; axis++) out[axis] = joint_.constraint().stiffness_applied(axis);

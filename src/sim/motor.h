@@ -32,11 +32,14 @@ class Motor {
 
   /// Before Bullet steps: a follower's target from its leader.
   void follow();
-  /// After Bullet stepped: forces into the live block.
-  void tell();
+  /// A spring of it was held below its stiffness: said once, with the cure.
+  void say_cap();
 
   // What the rows do and read; public because the table, which is no member, names them.
   void effect_axes();
+  void effect_goals();
+  void read_force(double* out) const;
+  void read_torque(double* out) const;
   void read_linear_stiffness(double* out) const;
   void read_angular_stiffness(double* out) const;
   void read_linear_damping(double* out) const;
@@ -52,11 +55,9 @@ class Motor {
  private:
   void set_own(const Row& linear_row, const Row& angular_row, double value);
   void say_contradiction(int axis);
-  void say_cap();
 
   Joint& joint_;
   NodeId id_;
-  bool springs_ = false;  // one is in force
   bool said_contradiction_ = false;
   bool said_cap_ = false;
 };

@@ -37,7 +37,8 @@ void read_snapshots(const EngineLink& link, const std::atomic<bool>& over) {
     last = now->tick;
     for (const RosterBody& body : now->roster->bodies) {
       EXPECT_EQ(now->live.at(body.enabled_at), 1);
-      for (const std::uint32_t joint : body.joints) EXPECT_LE(joint + 20, now->live.size());
+      for (const std::uint32_t joint : body.joints)
+        EXPECT_LE(joint + live_offsets().joint_rotation + 4, now->live.size());
     }
     if (last % 7 == 0) held = now;
   }

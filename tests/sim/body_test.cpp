@@ -18,8 +18,8 @@ std::vector<double> all_rows(Stage& s, const Body& body) {
   std::vector<double> out;
   s.store.walk(body.id(), [&](NodeId id) {
     for (const Row& row : s.store.table(id).rows()) {
-      // what a spring applied is of the last step, which a copy has not made yet
-      if (row.kind == RowKind::action || row.name.ends_with("_applied")) continue;
+      // what was applied is of the last step, which a copy has not made yet
+      if (row.kind == RowKind::action || row.name.find("applied") != std::string::npos) continue;
       const std::vector<double> v = s.get(id, row.name);
       out.insert(out.end(), v.begin(), v.end());
     }
