@@ -47,7 +47,6 @@ constexpr std::array kLibraries{
     Library{"urdf_", "model"},
     Library{"tinyxml", "model"},
     Library{"console_bridge/", "model"},
-    Library{"assimp/", "model"},
     Library{"lua", "script"},
     Library{"lauxlib.h", "script"},
     Library{"luajit-2.1/", "script"},
