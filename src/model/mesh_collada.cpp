@@ -100,7 +100,10 @@ Result<Placement> unit_of(const Element* root) {
   const Element* unit = asset ? asset->FirstChildElement("unit") : nullptr;
   const char* text = unit ? unit->Attribute("meter") : nullptr;
   if (!text) return Placement{};
-  const std::optional<double> meter = parse_number(text);
+  // a well-known exporter writes this one number as its country does: 0,01
+  std::string number = text;
+  std::replace(number.begin(), number.end(), ',', '.');
+  const std::optional<double> meter = parse_number(number);
   if (meter && *meter > 0) return Placement{Mat3(*meter), Vec3(0)};
   return fault_at(unit, fmt::format("meter={} can't be", quoted_word(text)));
 }

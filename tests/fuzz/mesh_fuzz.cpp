@@ -16,9 +16,6 @@ void must(bool condition) {
 
 }  // namespace
 
-// assimp leaks what it gave up on, a few kB for some broken files, and looking for leaks takes longer than all the rest
-extern "C" const char* __asan_default_options() { return "detect_leaks=0"; }
-
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   if (size == 0) return 0;
   constexpr std::array kFormats{limber::MeshFormat::stl, limber::MeshFormat::obj, limber::MeshFormat::dae};

@@ -148,7 +148,10 @@ TEST(MeshCollada, UnitsScaleTheWholeScene) {
   std::string text = placed("<translate>100 0 0</translate>" + std::string(kShape));
   text.insert(9, "<asset><up_axis>Y_UP</up_axis><unit meter='0.01'/></asset>");
   expect_soup(soup_of(text), {{1.01, 0, 0}, {1, 0.01, 0}, {1, 0, 0.01}}, "centimetres");
-  for (const char* bad : {"0", "-1", "inf", "x", ""}) {
+  std::string comma = text;
+  comma.replace(comma.find("0.01"), 4, "0,010000");
+  expect_soup(soup_of(comma), soup_of(text), "a decimal comma");
+  for (const char* bad : {"0", "-1", "inf", "x", "1,0.1", ""}) {
     std::string broken = text;
     broken.replace(broken.find("0.01"), 4, bad);
     EXPECT_EQ(read(broken), fmt::format("line 1: meter='{}' can't be. Export it again, or as binary STL.", bad));
