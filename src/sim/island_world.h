@@ -12,7 +12,6 @@ namespace limber {
 
 /// How a world is made; see performance notes of each for what it buys.
 struct WorldSetup {
-  int manifold_pool = 65536;        ///< Contact pairs that fit without heap allocation (about 1 kB each).
   double broadphase_margin = 0.01;  ///< Metres that bounding boxes are fattened by; shared by all worlds.
   int solver_iterations = 50;
 };

@@ -62,7 +62,7 @@ struct Stage {
   btBoxShape box{btVector3(0.05f, 0.05f, 0.1f)};
   std::deque<std::unique_ptr<btRigidBody>> bodies;
   std::deque<std::unique_ptr<JointConstraint>> joints;
-  IslandWorld world{WorldSetup{1024, 0.01, 20}};
+  IslandWorld world{WorldSetup{0.01, 20}};
 };
 
 bool same_bits(const btRigidBody& a, const btRigidBody& b) {

@@ -45,7 +45,7 @@ struct Rig {
   btSphereShape ball{0.05f};
   std::deque<std::unique_ptr<btRigidBody>> parts;
   std::deque<std::unique_ptr<JointConstraint>> joints;
-  IslandWorld world{WorldSetup{64, 0.01, 50}};
+  IslandWorld world{WorldSetup{}};
 };
 
 inline AxisSettings free_axis() {

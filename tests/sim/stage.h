@@ -89,7 +89,7 @@ struct Stage {
   Part& floor() { return lone(plane_model(), 0); }
 
   Store store;
-  World world{store, WorldSetup{4096, 0.01, 50}};
+  World world{store};
 
  private:
   int made_ = 0;
