@@ -109,16 +109,21 @@ std::size_t utf8_length(std::string_view s) {
   return n;
 }
 
+// letters put in, left out, changed, and neighbours that changed places (optimal string alignment), each one edit
 std::size_t edit_distance(std::string_view a, std::string_view b) {
+  const auto same = [&](std::size_t i, std::size_t k) { return lower(a[i]) == lower(b[k]); };
+  std::vector<std::size_t> older(b.size() + 1);
+  std::vector<std::size_t> old(b.size() + 1);
   std::vector<std::size_t> row(b.size() + 1);
   std::iota(row.begin(), row.end(), std::size_t{0});
   for (std::size_t i = 1; i <= a.size(); i++) {
-    std::size_t diagonal = row[0];
+    older.swap(old);
+    old.swap(row);
     row[0] = i;
     for (std::size_t k = 1; k <= b.size(); k++) {
-      const std::size_t changed = diagonal + (lower(a[i - 1]) == lower(b[k - 1]) ? 0 : 1);
-      diagonal = row[k];
-      row[k] = std::min({row[k] + 1, row[k - 1] + 1, changed});
+      row[k] = std::min({old[k] + 1, row[k - 1] + 1, old[k - 1] + (same(i - 1, k - 1) ? 0 : 1)});
+      const bool swapped = i > 1 && k > 1 && same(i - 1, k - 2) && same(i - 2, k - 1);
+      if (swapped) row[k] = std::min(row[k], older[k - 2] + 1);
     }
   }
   return row[b.size()];
@@ -212,6 +217,18 @@ std::string printable(std::string_view text) {
     }
   }
   return shown;
+}
+
+std::string shortened(std::string_view text, std::size_t most) {
+  if (text.size() <= most) return std::string(text);
+  const auto inside = [&](std::size_t i) { return (static_cast<unsigned char>(text[i]) & 0xc0u) == 0x80u; };
+  constexpr std::string_view kCut = " … ";
+  const std::size_t room = most - std::min(most, kCut.size());
+  std::size_t head = room / 2;
+  std::size_t tail = text.size() - (room - head);
+  while (head > 0 && inside(head)) head--;
+  while (tail < text.size() && inside(tail)) tail++;
+  return fmt::format("{}{}{}", text.substr(0, head), kCut, text.substr(tail));
 }
 
 std::optional<double> parse_number(std::string_view text) {

@@ -21,7 +21,8 @@ bool pattern_match(std::string_view pattern, std::string_view name, int* steps =
 /// Whether a name holds any of OSC's pattern characters.
 bool is_pattern(std::string_view name);
 
-/// The nearest of `names` to what was written (edit distance at most a third of its length, ignoring case), or empty.
+/// The nearest of `names` to what was written (edit distance at most a third of its length, neighbours
+/// that changed places being one edit, ignoring case), or empty.
 std::string_view nearest_name(std::string_view written, std::span<const std::string_view> names);
 /// "; did you mean 'x'?" or, without a near one, "; there are: a, b, c …" (at most eight), or "; there is none".
 std::string name_hint(std::string_view written, std::span<const std::string_view> names);
@@ -29,6 +30,9 @@ std::string name_hint(std::string_view written, const std::vector<std::string>& 
 
 /// Control characters and broken UTF-8 as \xNN, so that nothing from outside writes to a terminal as it likes.
 std::string printable(std::string_view text);
+
+/// The text, or where it is longer than `most` bytes (at least 16) its beginning and its end with " … " between.
+std::string shortened(std::string_view text, std::size_t most);
 
 /// A finite number that fills the whole text (blanks around it aside), whatever the locale; else nothing.
 std::optional<double> parse_number(std::string_view text);

@@ -8,6 +8,11 @@
 namespace limber {
 namespace {
 
+struct Parcel {
+  std::size_t bytes = 0;
+};
+std::size_t weight_of(const Parcel& parcel) { return parcel.bytes; }
+
 TEST(Inbox, KeepsTheOrderAndCountsWhatDoesNotFit) {
   Inbox<int> inbox(3);
   for (int i = 0; i < 5; i++) EXPECT_EQ(inbox.push(i), i < 3);
@@ -21,6 +26,23 @@ TEST(Inbox, KeepsTheOrderAndCountsWhatDoesNotFit) {
   inbox.drain(out);
   EXPECT_EQ(out, (std::vector<int>{7}));
   EXPECT_EQ(inbox.dropped(), 2u);
+}
+
+TEST(Inbox, BytesAreBoundedToo) {
+  Inbox<Parcel> inbox(100, 1000);
+  EXPECT_TRUE(inbox.push({600}));
+  EXPECT_FALSE(inbox.push({401}));
+  EXPECT_TRUE(inbox.push({400}));
+  EXPECT_FALSE(inbox.push({1}));
+  EXPECT_EQ(inbox.dropped(), 2u);
+  std::vector<Parcel> out;
+  inbox.drain(out);
+  EXPECT_EQ(out.size(), 2u);
+  EXPECT_TRUE(inbox.push({1000})) << "what was taken out weighs no more";
+  EXPECT_FALSE(inbox.push({SIZE_MAX}));
+  // without a function of its own an item weighs what its type does
+  Inbox<int> numbers(100, 3 * sizeof(int));
+  for (int i = 0; i < 5; i++) EXPECT_EQ(numbers.push(i), i < 3);
 }
 
 TEST(Inbox, ReusesTheReadersMemory) {

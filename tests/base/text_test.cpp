@@ -10,6 +10,16 @@
 namespace limber {
 namespace {
 
+TEST(Text, ShortenedKeepsBothEnds) {
+  EXPECT_EQ(shortened("short", 16), "short");
+  EXPECT_EQ(shortened("0123456789abcdef", 16), "0123456789abcdef");
+  EXPECT_EQ(shortened("0123456789abcdefg", 16), "01234 … bcdefg");
+  // nothing of a character of several bytes is cut: ä is two, and the middle falls into one
+  const std::string umlauts = "äääääääääää";
+  EXPECT_EQ(shortened(umlauts, 16), "ää … äää");
+  EXPECT_LE(shortened(std::string(5000, 'x'), 1000).size(), 1000u);
+}
+
 TEST(Text, NamesAreComparedWithoutCaseAndUnderscores) {
   EXPECT_EQ(plain_name("angular_Servo__Position_"), "angularservoposition");
   EXPECT_TRUE(same_name("appInterval", "app_interval"));
@@ -119,6 +129,9 @@ TEST(Text, NearNamesAreWithinAThird) {
   EXPECT_EQ(nearest_name("angular_sevro_position", names), "angular_servo_position");
   EXPECT_EQ(nearest_name("MASS", names), "mass");
   EXPECT_EQ(nearest_name("mas", names), "mass");
+  EXPECT_EQ(nearest_name("msas", names), "mass") << "neighbours that changed places are one edit";
+  EXPECT_EQ(nearest_name("amss", names), "mass");
+  EXPECT_EQ(nearest_name("smsa", names), "") << "twice is two";
   EXPECT_EQ(nearest_name("bouncy", names), "bounce");
   // 'xyss' is two of four letters away, more than a third
   EXPECT_EQ(nearest_name("xyss", names), "");
@@ -130,7 +143,7 @@ TEST(Text, HintsSayWhatThereIs) {
   const std::vector<std::string> none;
   EXPECT_EQ(name_hint("x", none), "; there is none");
   const std::vector<std::string> arms = {"arm1", "arm2"};
-  EXPECT_EQ(name_hint("amr1", {"arm1"}), "; there are: arm1");  // a swap is two edits, and a third of 4 is 1
+  EXPECT_EQ(name_hint("amr1", {"arm1"}), "; did you mean 'arm1'?");  // a swap is one edit, and a third of 4 is 1
   EXPECT_EQ(name_hint("ar1", arms), "; did you mean 'arm1'?");
   EXPECT_EQ(name_hint("quadruped", arms), "; there are: arm1, arm2");
   std::vector<std::string> many;

@@ -125,7 +125,7 @@ TEST(Osc, Mistakes) {
       {"osc:on('/a')", "osc:on takes a function, not nothing"},
       {"osc.on('/a', print)", "on is a method of osc: write osc:on(…), with a colon"},
       {"osc:sned('/a')",
-       "osc has no member 'sned'; there are: address, sender, on, send, reply, listen, stream_to, to"},
+       "osc has no member 'sned'; did you mean 'send'?"},
       {"osc.address = 1", "osc: 'address' can't be set"},
       {"osc:listen(70000)", "osc:listen takes a port 1 .. 65535, not 70000"},
       {"osc:stream_to('10.0.0.5')", "'10.0.0.5' is no address; write \"host:port\", such as \"127.0.0.1:9000\""},
