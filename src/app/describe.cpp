@@ -17,12 +17,12 @@ namespace limber {
 
 namespace {
 
-std::string range_text(const Row& row) {
+std::string values_text(const Row& row) {
   if (row.kind == RowKind::action) return "";
   if (!row.choices.empty()) return fmt::format("{}", fmt::join(row.choices, "|"));
   if (row.type == RowType::boolean || row.type == RowType::flags3) return "true|false";
   if (!std::isfinite(row.min) && !std::isfinite(row.max)) return "any";
-  return fmt::format("{} .. {}", row.min, row.max);
+  return range_text(row);
 }
 
 std::string initial_text(const Row& row) {
@@ -38,7 +38,16 @@ std::string initial_text(const Row& row) {
 
 void line(std::string& out, const std::string& path, const Table& table, const Row& row) {
   out += fmt::format("{}/{}\t{}\t{}\t{}\t{}\t{}\t{}\t{}\n", path, row.name, Dispatch::seed_address(table, row),
-                     kind_name(row.kind), type_name(row.type), row.unit, range_text(row), initial_text(row), row.doc);
+                     kind_name(row.kind), type_name(row.type), row.unit, values_text(row), initial_text(row), row.doc);
+}
+
+// one number, or one for each of the row's numbers; null where an axis has no bound
+void add_bound(nlohmann::json& j, const char* key, double bound, const std::vector<double>& axes) {
+  if (!axes.empty()) {
+    j[key] = axes;  // JSON knows no infinity: it becomes null
+  } else if (std::isfinite(bound)) {
+    j[key] = bound;
+  }
 }
 
 nlohmann::json as_json(const std::string& path, const Table& table, const Row& row) {
@@ -47,8 +56,11 @@ nlohmann::json as_json(const std::string& path, const Table& table, const Row& r
   if (const std::string seed = Dispatch::seed_address(table, row); !seed.empty()) j["seed"] = seed;
   if (!row.unit.empty()) j["unit"] = row.unit;
   if (!row.choices.empty()) j["choices"] = row.choices;
-  if (std::isfinite(row.min) && row.kind != RowKind::action) j["min"] = row.min;
-  if (std::isfinite(row.max) && row.kind != RowKind::action) j["max"] = row.max;
+  if (row.kind != RowKind::action) {
+    add_bound(j, "min", row.min, row.axis_min);
+    add_bound(j, "max", row.max, row.axis_max);
+  }
+  if (row.step > 0) j["step"] = row.step;
   if (row.writable()) j["default"] = std::vector<double>(row.initial.begin(), row.initial.begin() + row.width);
   return j;
 }

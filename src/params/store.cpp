@@ -168,7 +168,7 @@ Result<SetOutcome> Store::set(NodeId id, const Row& row, std::span<const double>
     } else if (row.type == RowType::integer || row.type == RowType::choice) {
       v = std::round(v);
     }
-    taken[i] = std::clamp(v, row.min, row.max);
+    taken[i] = std::clamp(v, row.low(i), row.high(i));
     const bool flag = row.type == RowType::boolean || row.type == RowType::flags3;
     if (!flag && taken[i] != v) outcome.clamped = true;
   }

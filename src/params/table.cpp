@@ -1,6 +1,8 @@
 // Tables: layout of the rows, look-up by name.
 #include "params/table.h"
 
+#include <fmt/format.h>
+
 #include "base/check.h"
 #include "base/text.h"
 #include "params/units.h"
@@ -31,6 +33,11 @@ std::string_view kind_name(RowKind kind) {
   return kNames[static_cast<std::size_t>(kind)];
 }
 
+std::string range_text(const Row& row) {
+  if (row.axis_min.empty() || row.axis_max.empty()) return fmt::format("{} .. {}", row.min, row.max);
+  return fmt::format("{} .. {}", fmt::join(row.axis_min, " "), fmt::join(row.axis_max, " "));
+}
+
 Table::Table(std::string name, std::string path, std::string seed, std::vector<Row> rows)
     : name_(std::move(name)), path_(std::move(path)), seed_(std::move(seed)), rows_(std::move(rows)) {
   LIMBER_CHECK(rows_.size() <= 64);
@@ -40,6 +47,8 @@ Table::Table(std::string name, std::string path, std::string seed, std::vector<R
     row.width = width_of(row.type);
     plain_.push_back(plain_name(row.name));
     LIMBER_CHECK(known_unit(row.unit));
+    LIMBER_CHECK(row.axis_min.empty() || row.axis_min.size() == row.width);
+    LIMBER_CHECK(row.axis_max.empty() || row.axis_max.size() == row.width);
     if (!row.stored()) continue;
     std::uint32_t& width = row.live ? live_width_ : kept_width_;
     row.offset = width;

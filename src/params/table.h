@@ -47,6 +47,9 @@ struct Row {
   std::string unit;          ///< As in units(); empty: a pure number.
   double min = -kUnbounded;  ///< Each number is clamped to min .. max.
   double max = kUnbounded;
+  std::vector<double> axis_min;  ///< Where each number has a range of its own: one a number; min, max are the widest.
+  std::vector<double> axis_max;
+  double step = 0;                   ///< What a turn of a wheel changes it by; 0: nothing is said.
   std::array<double, 4> initial{};   ///< The default.
   std::string doc;                   ///< One line for a person.
   std::vector<std::string> choices;  ///< Labels of a choice: 0, 1, 2 …
@@ -65,10 +68,15 @@ struct Row {
   std::uint32_t offset = 0;  ///< First number in the node's kept or live block.
   std::uint32_t width = 0;
 
+  double low(std::size_t i) const { return axis_min.empty() ? min : axis_min[i]; }
+  double high(std::size_t i) const { return axis_max.empty() ? max : axis_max[i]; }
   bool view() const { return read != nullptr; }
   bool stored() const { return kind != RowKind::action && !view(); }
   bool writable() const { return kind == RowKind::property || kind == RowKind::state; }
 };
+
+/// "0 .. 10", or with ranges of their own "0 1 2 .. 5 5 5".
+std::string range_text(const Row& row);
 
 /// The rows of one class.
 class Table {

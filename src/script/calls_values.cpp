@@ -20,8 +20,8 @@ const Row& row_of(const ScriptContext& c, NodeId id, std::int32_t row) {
   return c.world.store().table(id).row(static_cast<std::uint32_t>(row));
 }
 
-std::string range_text(const Row& row) {
-  return fmt::format("{} .. {}{}{}", number_text(row.min), number_text(row.max), row.unit.empty() ? "" : " ", row.unit);
+std::string range_of(const Row& row) {
+  return fmt::format("{}{}{}", range_text(row), row.unit.empty() ? "" : " ", row.unit);
 }
 
 std::string values_text(std::span<const double> values) {
@@ -42,7 +42,7 @@ std::int32_t write(ScriptContext& c, NodeId id, const Row& row, std::span<const 
   const Result<SetOutcome> outcome = store.set(id, row, values);
   if (!outcome) return c.refuse(outcome.error());
   if (!outcome->clamped) return kOk;
-  c.say(fmt::format("{}: '{}' takes {}; {} is outside and was clamped", label_of(c, id), row.name, range_text(row),
+  c.say(fmt::format("{}: '{}' takes {}; {} is outside and was clamped", label_of(c, id), row.name, range_of(row),
                     values_text(values)));
   return kClamped;
 }

@@ -97,8 +97,11 @@ std::int32_t param_row(void* c, const char* name, std::int32_t length, std::int3
   }
   row.min = *std::min_element(low, low + width);
   row.max = *std::max_element(high, high + width);
-  const auto wide = [&](const double* v) { return width == 3 ? Vec3(v[0], v[1], v[2]) : Vec3(v[0]); };
-  context.param_ranges.push_back({wide(low), wide(high)});
+  const auto differ = [&](const double* v) { return std::any_of(v, v + width, [&](double x) { return x != v[0]; }); };
+  if (differ(low) || differ(high)) {
+    row.axis_min.assign(low, low + width);
+    row.axis_max.assign(high, high + width);
+  }
   context.param_rows.push_back(std::move(row));
   return kOk;
 }
@@ -120,6 +123,8 @@ std::int32_t param_unit(void* c, const char* text, std::int32_t length) {
   return kOk;
 }
 
+void param_step(void* c, double step) { context_of(c).param_rows.back().step = step; }
+
 void param_choice(void* c, const char* text, std::int32_t length) {
   Row& row = context_of(c).param_rows.back();
   row.choices.emplace_back(text_of(text, length));
@@ -128,10 +133,8 @@ void param_choice(void* c, const char* text, std::int32_t length) {
 
 std::int32_t param_done(void* c) {
   ScriptContext& context = context_of(c);
-  context.params = std::make_unique<ParamsNode>(context.world.store(), std::move(context.param_rows),
-                                                std::move(context.param_ranges));
+  context.params = std::make_unique<ParamsNode>(context.world.store(), std::move(context.param_rows));
   context.param_rows.clear();
-  context.param_ranges.clear();
   context.tell(context.params->id());
   context.answer.count = static_cast<std::int32_t>(context.world.store().table_number(context.params->table()));
   return kOk;

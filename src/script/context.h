@@ -46,7 +46,6 @@ struct ScriptContext {
   BuildOptions build;
   Message message;
   std::vector<Row> param_rows;
-  std::vector<ParamsNode::Range> param_ranges;
 
   std::map<std::string, bool> loaded_files;  ///< URDF files that the run loaded: callbacks may load them again.
   OscPlan plan;

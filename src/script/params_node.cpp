@@ -11,7 +11,8 @@ namespace {
 
 bool same_row(const Row& a, const Row& b) {
   return a.name == b.name && a.type == b.type && a.unit == b.unit && a.min == b.min && a.max == b.max &&
-         a.initial == b.initial && a.doc == b.doc && a.choices == b.choices;
+         a.axis_min == b.axis_min && a.axis_max == b.axis_max && a.step == b.step && a.initial == b.initial &&
+         a.doc == b.doc && a.choices == b.choices;
 }
 
 // stores number tables by address and keep them, so a table lives as long as the program; equal ones are used again,
@@ -29,22 +30,9 @@ const Table& table_of(std::vector<Row> rows) {
 
 }  // namespace
 
-ParamsNode::ParamsNode(Store& store, std::vector<Row> rows, std::vector<Range> ranges)
-    : store_(store), ranges_(std::move(ranges)) {
-  for (Row& row : rows) row = rows::effect<&ParamsNode::clamp>(std::move(row));
-  id_ = store_.add(table_of(std::move(rows)), store_.root(), "scene", this);
-}
+ParamsNode::ParamsNode(Store& store, std::vector<Row> rows)
+    : store_(store), id_(store.add(table_of(std::move(rows)), store.root(), "scene", this)) {}
 
 ParamsNode::~ParamsNode() { store_.remove(id_); }
-
-void ParamsNode::clamp() {
-  for (const Row& row : table().rows()) {
-    if (row.type != RowType::vec3) continue;
-    double* value = store_.tell(id_, row);
-    for (int i = 0; i < 3; i++) {
-      value[i] = std::clamp(value[i], ranges_[row.index].low[i], ranges_[row.index].high[i]);
-    }
-  }
-}
 
 }  // namespace limber

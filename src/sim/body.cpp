@@ -233,10 +233,13 @@ void Body::build_copy(const Body& source) {
   }
 }
 
-Pose Body::pose() const { return parts_.empty() ? Pose{} : root()->pose(); }
+Pose Body::pose() const { return parts_.empty() ? planned_ : root()->pose(); }
 
 void Body::set_pose(const Pose& pose) {
-  if (parts_.empty()) return;
+  if (parts_.empty()) {
+    planned_ = pose;
+    return;
+  }
   const Pose moved = pose * this->pose().inverse();
   for (const auto& part : parts_) part->set_pose(part.get() == root() ? pose : moved * part->pose());
 }

@@ -59,6 +59,7 @@ class Body {
 
   /// The root's link frame. Setting moves the whole body rigidly; velocities stay.
   Pose pose() const;
+  /// Of a body without parts: where its first part is placed, unless that is told a pose of its own.
   void set_pose(const Pose& pose);
   bool enabled() const;
   /// Whether it takes part: what `enabled` said at the last effects.
@@ -108,6 +109,7 @@ class Body {
   std::vector<std::unique_ptr<Joint>> joints_;
   std::vector<std::unique_ptr<Motor>> motors_;
   std::vector<Motor*> followers_;
+  Pose planned_;  // while there is no part
   bool in_world_ = true;
   std::size_t entered_parts_ = 0;  // the first so many are in Bullet's world
   std::size_t entered_joints_ = 0;

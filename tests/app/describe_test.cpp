@@ -105,6 +105,35 @@ TEST(Describe, AsJson) {
   EXPECT_EQ(json.size() + 1, lines_of(describe_classes()).size());
 }
 
+TEST(Describe, AScenesParametersHaveStepsAndRangesPerAxis) {
+  const Folder folder;
+  const std::string scene = folder.file("s.lua", R"(
+params {
+  { "wind", 2, min = 0, max = 10, step = 0.5 },
+  { "where", vec3(1, 1, 1), min = vec3(0, 0, -1), max = vec3(1, 2, 3) },
+}
+)");
+  const Ran text = run({"describe", scene});
+  EXPECT_NE(text.out.find("\n/scene/where\t\tproperty\tvec3\t\t0 0 -1 .. 1 2 3\t1 1 1\t\n"), std::string::npos);
+  const auto json = nlohmann::json::parse(run({"describe", "--json", scene}).out);
+  std::size_t found = 0;
+  for (const auto& entry : json) {
+    if (entry["path"] == "/scene/wind") {
+      found++;
+      EXPECT_EQ(entry["step"], 0.5);
+      EXPECT_EQ(entry["max"], 10);
+    } else if (entry["path"] == "/scene/where") {
+      found++;
+      EXPECT_FALSE(entry.contains("step"));
+      EXPECT_EQ(entry["min"], (std::vector<double>{0, 0, -1}));
+      EXPECT_EQ(entry["max"], (std::vector<double>{1, 2, 3}));
+    } else {
+      EXPECT_FALSE(entry.contains("step")) << entry["path"];
+    }
+  }
+  EXPECT_EQ(found, 2U);
+}
+
 // docs/osc.md names the messages; whoever adds or takes one away hears of it here
 TEST(Describe, TheOscReferenceNamesEverySeedMessage) {
   std::ifstream in(LIMBER_SOURCE_DIR "/docs/osc.md");

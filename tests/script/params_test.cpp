@@ -66,6 +66,40 @@ end)
   EXPECT_NE(stage.logged()[0].find("params: 'wind' takes 0 .. 10 N; 11 is outside and was clamped"), std::string::npos);
 }
 
+TEST(Params, AVectorsAxesHaveTheirOwnRanges) {
+  Stage stage;
+  ASSERT_EQ(stage.play(std::string(kParams) + R"(
+sim:on_step(function() params.place = vec3(-1, 9, 3) end)
+)"),
+            "");
+  const NodeId node = stage.store.child(stage.store.root(), "scene");
+  const Row& place = stage.store.table(node).at("place");
+  EXPECT_EQ(place.axis_min, (std::vector<double>{0, 1, 2}));
+  EXPECT_EQ(place.axis_max, (std::vector<double>{5, 5, 5}));
+  EXPECT_TRUE(stage.store.table(node).at("wind").axis_min.empty());
+  // the door itself clamps, and says so
+  const double low[] = {1, 0, 3};
+  const Result<SetOutcome> set = stage.store.set(node, place, low);
+  ASSERT_TRUE(set.ok());
+  EXPECT_TRUE(set->clamped);
+  EXPECT_EQ(stage.store.values(node, place)[1], 1);
+  stage.tick(1);
+  EXPECT_EQ(stage.store.values(node, place)[0], 0);
+  EXPECT_EQ(stage.store.values(node, place)[1], 5);
+  EXPECT_EQ(stage.store.values(node, place)[2], 3);
+  ASSERT_EQ(stage.logged().size(), 1u);
+  EXPECT_NE(stage.logged()[0].find("'place' takes 0 1 2 .. 5 5 5 m; -1, 9, 3 is outside"), std::string::npos)
+      << stage.logged()[0];
+}
+
+TEST(Params, StepIsKept) {
+  Stage stage;
+  ASSERT_EQ(stage.run("params { { 'wind', 1, step = 0.25 }, { 'free', 2 } }"), "");
+  const Table& table = stage.store.table(stage.store.child(stage.store.root(), "scene"));
+  EXPECT_EQ(table.at("wind").step, 0.25);
+  EXPECT_EQ(table.at("free").step, 0);
+}
+
 TEST(Params, TheNodeGoesWithTheScene) {
   Store store;
   World world(store);

@@ -99,6 +99,25 @@ NodeId node_of(const Stage& stage, const std::string& expression) {
   return expression == "m1" ? arm.find_motor("joint_1")->id() : arm.find_motor("joint_2")->id();
 }
 
+TEST(Things, ABodyIsPlacedBeforeItHasParts) {
+  Stage stage;
+  ASSERT_EQ(stage.run(R"(
+local ball = sim:add_sphere_shape("ball", 0.1)
+local body = sim:add_body("a", { position = vec3(1, 2, 3) })
+print(body.position)
+body:add_part("first", ball)
+body:add_part("second", ball)
+print(body.position, body:part("first").position, body:part("second").position)
+local own = sim:add_body("b", { position = vec3(1, 2, 3), rotation = quat(0, 0, 1, 0) })
+own:add_part("first", ball, { position = vec3(4, 5, 6) })
+print(own.position, own.rotation.z)
+)"),
+            "");
+  EXPECT_EQ(
+      stage.host.printed,
+      (std::vector<std::string>{"vec3(1, 2, 3)", "vec3(1, 2, 3)\tvec3(1, 2, 3)\tvec3(0, 0, 0)", "vec3(4, 5, 6)\t1"}));
+}
+
 TEST(Things, EveryWritableRowIsWrittenAndReadBack) {
   int rows = 0;
   for (const Class& c : classes()) {

@@ -88,7 +88,7 @@ method(body, "add_part", function(h, name, of_shape, opts)
     fail("%s: mass must not be negative (0: a part that never moves)", what)
   end
   local code = api.add_part(ctx, h.slot_, h.generation_, name, #name, of_shape.slot_, of_shape.generation_,
-    mass or -1, P.pose_of(opts, what))
+    mass or -1, P.pose_of(opts, what, 0 / 0))
   return finish_making(code, part, opts, part_own, h)
 end)
 

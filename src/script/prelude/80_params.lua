@@ -87,6 +87,7 @@ local function declare_one(spec, i)
   P.check(api.param_row(ctx, name, #name, kind, initial, low, high))
   for _, choice in ipairs(choices) do api.param_choice(ctx, choice, #choice) end
   if spec.doc then api.param_doc(ctx, spec.doc, #spec.doc) end
+  if spec.step then api.param_step(ctx, spec.step) end
   if spec.unit then P.check(api.param_unit(ctx, spec.unit, #spec.unit)) end
 end
 
