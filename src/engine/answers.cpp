@@ -13,7 +13,9 @@ namespace {
 
 constexpr std::size_t kMostValues = 256;  // values that one /get answers with
 
-Outcome answered(Message answer) {
+// no answer looks like a question: else two programs that are aimed at each other would ask for ever
+Outcome answered(Message answer, std::size_t question) {
+  if (answer.args.size() == question) answer.args.push_back(Arg::of(""));
   Outcome outcome;
   outcome.kind = Outcome::Kind::answered;
   outcome.answers.push_back(std::move(answer));
@@ -32,7 +34,7 @@ Outcome Answers::list(std::string_view kind, std::span<const Arg> args) const {
     for (const auto& shape : world_.shapes()) {
       if (kind == "shapes") answer.args.push_back(Arg::of(shape->name()));
     }
-    return answered(std::move(answer));
+    return answered(std::move(answer), 0);
   }
   if (args.size() != 1 || args[0].kind == Arg::Kind::nil) return Outcome::refused("takes the name of a body");
   const std::string name = Selector::text(args[0]);
@@ -45,7 +47,7 @@ Outcome Answers::list(std::string_view kind, std::span<const Arg> args) const {
   const Store& store = world_.store();
   const std::string_view group = kind.substr(0, kind.size() - 1);
   for (const NodeId id : store.children(store.child(body->id(), group))) answer.args.push_back(Arg::of(store.name(id)));
-  return answered(std::move(answer));
+  return answered(std::move(answer), 1);
 }
 
 Outcome Answers::get(std::span<const Arg> args) const {

@@ -2,8 +2,10 @@
 #pragma once
 
 #include <atomic>
+#include <cstddef>
 #include <cstdint>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "base/message.h"
@@ -31,16 +33,26 @@ struct Outgoing {
   Message message;
 };
 
+/// Bytes that they hold in memory, for the bounds of inboxes. [any]
+std::size_t weight_of(const Message& message);
+std::size_t weight_of(const Command& command);
+std::size_t weight_of(const Outgoing& out);
+
+/// `/error <address> <text>`, the text short enough for every receiver. [any]
+Message error_message(std::string_view address, std::string_view text);
+
 /// What the receiver and the dispatch have counted; readouts under /osc. Any thread adds. [any]
 struct Counters {
   std::atomic<std::uint64_t> received{0};        ///< Messages that came in whole.
   std::atomic<std::uint64_t> malformed{0};       ///< Datagrams that are no OSC.
+  std::atomic<std::uint64_t> denied{0};          ///< Datagrams from senders whom --osc-allow leaves out.
   std::atomic<std::uint64_t> unknown{0};         ///< Messages with an address that nobody answers.
   std::atomic<std::uint64_t> refused{0};         ///< Known address, wrong arguments or names.
   std::atomic<std::uint64_t> clamped{0};         ///< Values outside their range.
   std::atomic<std::uint64_t> dropped{0};         ///< Lost here: the inbox was full.
   std::atomic<std::uint64_t> dropped_kernel{0};  ///< Lost by the kernel: the socket's buffer was full.
   std::atomic<std::uint64_t> sent{0};            ///< Datagrams sent.
+  std::atomic<std::uint64_t> unsent{0};          ///< Datagrams that the system did not take.
 };
 
 }  // namespace limber

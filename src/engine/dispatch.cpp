@@ -46,6 +46,15 @@ std::string_view plain_address(std::string_view address, std::array<char, 96>& b
   return {buffer.data(), n};
 }
 
+// "part 'arm/base'", as all texts name things
+std::string thing_text(const Store& store, NodeId id) {
+  const std::string& word = store.table(id).name();
+  const NodeId owner = store.parent(store.parent(id));  // a part stands in its body's group of parts
+  if (!owner.null() && &store.table(owner) == &Body::table())
+    return fmt::format("{} '{}/{}'", word, store.name(owner), store.name(id));
+  return &store.table(id) == &Body::table() ? fmt::format("{} '{}'", word, store.name(id)) : store.path(id);
+}
+
 // how a button tells that it was let go; nothing is to be done then
 bool released(std::span<const Arg> value) { return value.size() == 1 && value[0].is_numeric() && value[0].number == 0; }
 
@@ -183,7 +192,7 @@ Outcome Dispatch::collect_writes(bool single, std::span<const Arg> value) {
     if (values) {
       writes_.push_back({place, *values});
     } else if (single || left_out.empty()) {
-      left_out = fmt::format("{}: {}", store_.path(place.node), values.error());
+      left_out = fmt::format("{}: {}", thing_text(store_, place.node), values.error());
     }
   }
   // many things leave out those that can't; one that was meant by its name, or all of them, is an answer
@@ -236,7 +245,7 @@ Outcome Dispatch::part_force(const Message& message) {
   if (const Result<void> selected = selector_.select(Part::table(), row, names, places_); !selected)
     return Outcome::refused(selected.error());
   if (Selector::single(names) && static_cast<Part*>(store_.thing(places_.front().node))->is_static())
-    return Outcome::refused(fmt::format("{} is static and never moves", store_.path(places_.front().node)));
+    return Outcome::refused(fmt::format("{} is static and never moves", thing_text(store_, places_.front().node)));
   for (const Place& place : places_) {
     Part& part = *static_cast<Part*>(store_.thing(place.node));
     part.apply_force_at({v[0], v[1], v[2]}, part.center() + Vec3(v[3], v[4], v[5]));

@@ -201,7 +201,7 @@ void Engine::execute(Message& message, const Origin& origin) {
   if (outcome.kind == Outcome::Kind::refused) {
     link_.counters.refused.fetch_add(1, std::memory_order_relaxed);
     faults_++;
-    refuse(message.address, origin, std::move(outcome.error));
+    refuse(message.address, origin, outcome.error);
   }
   const bool unknown = outcome.kind == Outcome::Kind::unknown;
   // the scene's handlers hear it after every message of the tick took effect
@@ -209,7 +209,7 @@ void Engine::execute(Message& message, const Origin& origin) {
     heard_.push_back({std::move(message), origin, unknown, std::move(outcome.error)});
   } else if (unknown) {
     link_.counters.unknown.fetch_add(1, std::memory_order_relaxed);
-    refuse(std::move(message.address), origin, std::move(outcome.error));
+    refuse(message.address, origin, outcome.error);
   }
 }
 
@@ -218,20 +218,20 @@ void Engine::call_handlers() {
     const bool handled = stage_->scene->message(heard.message, heard.origin);
     if (handled || !heard.unknown) continue;
     link_.counters.unknown.fetch_add(1, std::memory_order_relaxed);
-    refuse(std::move(heard.message.address), heard.origin, std::move(heard.error));
+    refuse(heard.message.address, heard.origin, heard.error);
   }
   heard_.clear();
 }
 
-void Engine::refuse(std::string address, const Origin& origin, std::string error) {
-  push_out({Outgoing::To::error, origin, {"/error", {Arg::of(address), Arg::of(error)}}});
+void Engine::refuse(std::string_view address, const Origin& origin, std::string_view error) {
+  push_out({Outgoing::To::error, origin, error_message(address, error)});
 }
 
 void Engine::say_clamped(const Message& message, const Row& row) {
   if (std::find(said_clamped_.begin(), said_clamped_.end(), &row) != said_clamped_.end()) return;
   said_clamped_.push_back(&row);
-  log_warning("{}: a value outside {} .. {} was brought into this range (said once for {})", printable(message.address),
-              row.min, row.max, row.name);
+  log_warning("{}: a value outside {} was brought into this range (said once for {})", printable(message.address),
+              range_text(row), row.name);
 }
 
 void Engine::send_contacts() {
@@ -298,8 +298,9 @@ void Engine::script_error(std::string_view file, int line, std::string_view text
   }
   faults_++;
   log_error("{}", text);
-  push_out(
-      {Outgoing::To::event, {}, {"/script/error", {Arg::of(file), Arg::of(static_cast<double>(line)), Arg::of(text)}}});
+  push_out({Outgoing::To::event,
+            {},
+            {"/script/error", {Arg::of(file), Arg::of(static_cast<double>(line)), Arg::of(shortened(text, 1000))}}});
 }
 
 }  // namespace limber

@@ -79,7 +79,7 @@ class Engine : private ScriptHost {
   void reset();
   void drain();
   void execute(Message& message, const Origin& origin);
-  void refuse(std::string address, const Origin& origin, std::string error);
+  void refuse(std::string_view address, const Origin& origin, std::string_view error);
   void call_handlers();
   void publish();
   void say_clamped(const Message& message, const Row& row);

@@ -13,8 +13,10 @@
 namespace limber {
 
 struct EngineLink {
-  Inbox<Command> inbox{65536};
-  Inbox<Outgoing> outbox{65536};
+  static constexpr std::size_t kMostItems = 65536;
+  static constexpr std::size_t kMostBytes = std::size_t{64} << 20;  ///< A datagram of 16 KiB may grow to 0.8 MiB.
+  Inbox<Command> inbox{kMostItems, kMostBytes};
+  Inbox<Outgoing> outbox{kMostItems, kMostBytes};
   Latest<Snapshot> snapshots;
   Latest<OscPlan> osc_plan;  ///< What the scene wishes; null until a scene has run, empty lists: it says nothing.
   Counters counters;

@@ -77,12 +77,14 @@ const Table& CounterNode::table() {
                            {
                                counter("received", "Messages that came in whole."),
                                counter("malformed", "Datagrams that are no OSC."),
+                               counter("denied", "Datagrams from senders whom --osc-allow leaves out."),
                                counter("unknown", "Messages with an address that nobody answers."),
                                counter("refused", "Messages refused for their arguments or names."),
                                counter("clamped", "Messages with values outside their range."),
                                counter("dropped", "Messages lost here: more came than a tick takes."),
                                counter("dropped_kernel", "Datagrams lost by the kernel: its buffer was full."),
                                counter("sent", "Datagrams sent."),
+                               counter("unsent", "Datagrams that the system did not take."),
                            });
   return table;
 }
@@ -91,9 +93,10 @@ CounterNode::CounterNode(Store& store, const Counters& counters)
     : store_(store), counters_(counters), id_(store.add(table(), store.root(), "osc", this)) {}
 
 void CounterNode::tell() {
-  const std::atomic<std::uint64_t>* const all[] = {&counters_.received,       &counters_.malformed, &counters_.unknown,
-                                                   &counters_.refused,        &counters_.clamped,   &counters_.dropped,
-                                                   &counters_.dropped_kernel, &counters_.sent};
+  // in the rows' order
+  const Counters& c = counters_;
+  const std::atomic<std::uint64_t>* const all[] = {&c.received, &c.malformed, &c.denied,         &c.unknown, &c.refused,
+                                                   &c.clamped,  &c.dropped,   &c.dropped_kernel, &c.sent,    &c.unsent};
   double* out = store_.live_block(id_);
   for (const auto* count : all) *out++ = static_cast<double>(count->load(std::memory_order_relaxed));
 }

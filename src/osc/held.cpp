@@ -16,8 +16,10 @@ HeldCommands::Verdict HeldCommands::offer(std::uint64_t time_tag, Command& comma
   const std::uint64_t now = clock_.ntp();
   if (time_tag <= now) return Verdict::now;
   if (time_tag - now > kFarthest) return Verdict::far;
-  if (held_.size() >= kMost) return Verdict::full;
-  held_.emplace(time_tag, Entry{std::move(command), clock_.steady() + kLongestWait});
+  const std::size_t bytes = weight_of(command);
+  if (held_.size() >= kMost || bytes > kMostBytes - bytes_) return Verdict::full;
+  bytes_ += bytes;
+  held_.emplace(time_tag, Entry{std::move(command), bytes, clock_.steady() + kLongestWait});
   return Verdict::held;
 }
 
@@ -26,6 +28,7 @@ std::optional<Command> HeldCommands::due() {
   const auto first = held_.begin();
   if (first->first > clock_.ntp() && first->second.at_latest > clock_.steady()) return std::nullopt;
   std::optional<Command> command = std::move(first->second.command);
+  bytes_ -= first->second.bytes;
   held_.erase(first);
   return command;
 }

@@ -15,6 +15,7 @@ namespace limber {
 class HeldCommands {
  public:
   static constexpr std::size_t kMost = 1024;
+  static constexpr std::size_t kMostBytes = std::size_t{32} << 20;
   static constexpr std::uint64_t kFarthest = std::uint64_t{10} << 32;  ///< 10 s, NTP.
 
   enum class Verdict : std::uint8_t {
@@ -37,9 +38,11 @@ class HeldCommands {
  private:
   struct Entry {
     Command command;
+    std::size_t bytes = 0;
     std::int64_t at_latest = 0;  // steady time; a system clock that is turned back must not keep it for ever
   };
   const NetClock& clock_;
+  std::size_t bytes_ = 0;
   std::multimap<std::uint64_t, Entry> held_;  // a multimap keeps equal keys in order of insertion
 };
 

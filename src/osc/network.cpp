@@ -16,7 +16,7 @@
 
 namespace limber {
 
-Network::Network(EngineLink& link, OscOptions options, const LiveOffsets& offsets, NetClock clock)
+Network::Network(EngineLink& link, OscOptions options, const LiveOffsets& offsets, NetClock clock, LookUp look_up)
     : link_(link),
       options_(std::move(options)),
       clock_(std::move(clock)),
@@ -30,6 +30,7 @@ Network::Network(EngineLink& link, OscOptions options, const LiveOffsets& offset
                 clock_),
       sender_(
           link.counters, [this](const Endpoint& sender) { return receiver_.socket_of(sender); }, clock_),
+      names_(std::move(look_up), [wake = wake_] { wake->ring(); }),
       streams_(link, offsets, clock_) {
   link_.wake_network = [wake = wake_] { wake->ring(); };
 }
@@ -41,7 +42,7 @@ Result<void> Network::start() {
   seen_plan_ = link_.osc_plan.read();
   std::vector<std::string> faults;
   if (const Result<void> opened = sender_.open(); !opened) faults.push_back(opened.error());
-  std::ranges::move(apply(effective_plan(options_, seen_plan_.get())), std::back_inserter(faults));
+  std::ranges::move(apply(effective_plan(options_, seen_plan_.get()), true), std::back_inserter(faults));
   if (!faults.empty() && !options_.optional) {
     stop();
     return Error{fmt::format("{}", fmt::join(faults, "\n"))};
@@ -105,23 +106,42 @@ void Network::wait_for_something() {
 }
 
 // opens and closes what differs from the plan before; the texts of what went wrong
-std::vector<std::string> Network::apply(const OscPlan& plan) {
+std::vector<std::string> Network::apply(const OscPlan& plan, bool wait_for_names) {
   std::vector<std::string> faults = receiver_.listen(plan.listen);
+  descriptors_ = receiver_.descriptors();
+  plan_ = plan;
+  said_.clear();
+  names_.forget();
+  std::ranges::move(aim(wait_for_names), std::back_inserter(faults));
+  return faults;
+}
+
+// sends to those of the plan's targets whose addresses are known; what went wrong, each once a plan
+std::vector<std::string> Network::aim(bool wait_for_names) {
+  std::vector<std::string> faults;
   targets_.clear();
-  for (const StreamTarget& wish : plan.targets) {
-    const Result<Endpoint> at = resolve(wish.host, wish.port);
-    if (at) {
-      targets_.push_back({wish, *at});
-    } else {
-      faults.push_back(fmt::format("OSC can't stream to {}:{}: {}; correct it in the scene or with --osc-out HOST:PORT",
-                                   printable(wish.host), wish.port, at.error()));
+  for (const StreamTarget& wish : plan_.targets) {
+    const std::optional<Result<Endpoint>> at =
+        wait_for_names ? names_.wait_for(wish.host, wish.port) : names_.find(wish.host, wish.port);
+    if (!at) continue;
+    if (*at) {
+      targets_.push_back({wish, **at});
+      continue;
     }
+    std::string fault =
+        fmt::format("OSC can't stream to {}:{}: {}; correct it in the scene or with --osc-out HOST:PORT",
+                    printable(wish.host), wish.port, at->error());
+    if (std::ranges::find(said_, fault) != said_.end()) continue;
+    said_.push_back(fault);
+    faults.push_back(std::move(fault));
   }
   sender_.set_targets(targets_);
   streams_.set_targets(targets_);
-  descriptors_ = receiver_.descriptors();
-  plan_ = plan;
+  renew_lines();
+  return faults;
+}
 
+void Network::renew_lines() {
   const std::scoped_lock lock(status_mutex_);
   bound_ = receiver_.bound();
   lines_.clear();
@@ -129,16 +149,17 @@ std::vector<std::string> Network::apply(const OscPlan& plan) {
   if (bound_.empty()) lines_.emplace_back("OSC in off");
   for (const Target& target : targets_) lines_.push_back("OSC out " + target_text(target.wish));
   if (targets_.empty()) lines_.emplace_back("OSC out off");
-  return faults;
 }
 
 void Network::apply_new_plan() {
+  const bool found = names_.take_news();
   std::shared_ptr<const OscPlan> wished = link_.osc_plan.read();
-  if (wished == seen_plan_) return;
+  const bool said = wished != seen_plan_;
   seen_plan_ = std::move(wished);
-  const OscPlan plan = effective_plan(options_, seen_plan_.get());
-  if (plan == plan_) return;
-  for (const std::string& fault : apply(plan)) log_error("{}", fault);
+  const OscPlan plan = said ? effective_plan(options_, seen_plan_.get()) : plan_;
+  const bool other = plan != plan_;
+  if (!other && !found) return;
+  for (const std::string& fault : other ? apply(plan, false) : aim(false)) log_error("{}", fault);
   for (const std::string& line : lines()) log_info("{}", line);
 }
 

@@ -11,6 +11,7 @@
 #include "base/result.h"
 #include "engine/link.h"
 #include "osc/clock.h"
+#include "osc/names.h"
 #include "osc/options.h"
 #include "osc/receiver.h"
 #include "osc/sender.h"
@@ -23,7 +24,8 @@ namespace limber {
 /// the Network is gone); start it when the scene has run once, so that the scene's plan counts. `link` outlives it.
 class Network {
  public:
-  Network(EngineLink& link, OscOptions options, const LiveOffsets& offsets, NetClock clock = {});
+  Network(EngineLink& link, OscOptions options, const LiveOffsets& offsets, NetClock clock = {},
+          LookUp look_up = resolve);
   ~Network();
   Network(const Network&) = delete;
   Network& operator=(const Network&) = delete;
@@ -42,7 +44,9 @@ class Network {
  private:
   void run();
   void wait_for_something();
-  std::vector<std::string> apply(const OscPlan& plan);
+  std::vector<std::string> apply(const OscPlan& plan, bool wait_for_names);
+  std::vector<std::string> aim(bool wait_for_names);
+  void renew_lines();
   void apply_new_plan();
   void send_outbox();
 
@@ -52,10 +56,12 @@ class Network {
   std::shared_ptr<Wake> wake_;
   Receiver receiver_;
   Sender sender_;
+  HostNames names_;
   Streams streams_;
   std::shared_ptr<const OscPlan> seen_plan_;
   OscPlan plan_;
   std::vector<Target> targets_;
+  std::vector<std::string> said_;  // faults of this plan's targets
   std::vector<Outgoing> outgoing_;
   std::vector<int> descriptors_;
   std::thread thread_;

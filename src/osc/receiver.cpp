@@ -163,7 +163,7 @@ void Receiver::take_from(Listening& socket, const char* data, std::size_t size, 
 
 void Receiver::take(const char* data, std::size_t size, const Endpoint& from) {
   if (!allowed(from)) {
-    denied_++;
+    link_.counters.denied.fetch_add(1, std::memory_order_relaxed);
     warn_seldom(not_allowed_,
                 [&] { return fmt::format("OSC from {} ignored: --osc-allow does not hold it", endpoint_text(from)); });
     return;
@@ -201,7 +201,8 @@ void Receiver::deliver(std::uint64_t time_tag, Command command) {
       break;
     case HeldCommands::Verdict::full:
       warn_seldom(held_full_, [] {
-        return fmt::format("{} bundles wait for their time: further ones are applied now", HeldCommands::kMost);
+        return fmt::format("{} bundles or {} MiB wait for their time: further ones are applied now",
+                           HeldCommands::kMost, HeldCommands::kMostBytes >> 20);
       });
       break;
     case HeldCommands::Verdict::now:
@@ -227,7 +228,7 @@ void Receiver::push(Command command) {
 
 void Receiver::refuse(const Origin& origin, const std::string& address, const std::string& text) {
   link_.counters.refused.fetch_add(1, std::memory_order_relaxed);
-  answers_.error({Outgoing::To::error, origin, {"/error", {Arg::of(address), Arg::of(text)}}});
+  answers_.error({Outgoing::To::error, origin, error_message(address, text)});
 }
 
 void Receiver::note_kernel_drops(Listening& socket, std::uint32_t count) {

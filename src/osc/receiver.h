@@ -51,7 +51,6 @@ class Receiver {
   /// The listening socket by which this sender's last message came, so that the answer comes from where the question
   /// went; -1 when it is forgotten.
   int socket_of(const Endpoint& sender) const;
-  std::uint64_t denied() const { return denied_; }
 
  private:
   struct Listening;
@@ -80,7 +79,6 @@ class Receiver {
   std::vector<std::unique_ptr<Listening>> sockets_;
   std::unique_ptr<Buffers> buffers_;
   std::array<Known, kKnown> known_{};
-  std::uint64_t denied_ = 0;
   bool pushed_ = false;  // since the engine was woken
   bool said_buffer_ = false;
   Seldom malformed_, not_allowed_, inbox_full_, kernel_full_, far_, held_full_;

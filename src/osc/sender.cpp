@@ -1,4 +1,4 @@
-// Every send is non-blocking: what the system does not take at once is lost, counted by nobody, and said seldom.
+// Every send is non-blocking: what the system does not take at once is lost, counted, and said seldom.
 #include "osc/sender.h"
 
 #include <netinet/in.h>
@@ -20,8 +20,17 @@ namespace {
 
 constexpr int kSendBuffer = 4 << 20;  // a whole frame of a thousand bodies fits
 constexpr int kUnreadBuffer = 4096;   // nobody reads what is sent to the sending socket
-constexpr std::array<std::string_view, 6> kNeverAnswered = {
-    "/error", "/pong", "/physics/joint/pos", "/physics/joint/rot", "/physics/joint/relrot", "/physics/joint/relpos"};
+// what we send by ourselves
+constexpr std::array<std::string_view, 10> kNeverAnswered = {"/error",
+                                                             "/pong",
+                                                             "/physics/joint/pos",
+                                                             "/physics/joint/rot",
+                                                             "/physics/joint/relrot",
+                                                             "/physics/joint/relpos",
+                                                             "/physics/contact",
+                                                             "/transport/state",
+                                                             "/script/error",
+                                                             "/script/ok"};
 
 bool answerable(const Message& error) {
   const std::string_view about = error.args.empty() ? std::string_view() : std::string_view(error.args[0].text);
@@ -96,6 +105,7 @@ void Sender::datagram(int fd, const Endpoint& to, std::span<const char> packet) 
     counters_.sent.fetch_add(1, std::memory_order_relaxed);
     return;
   }
+  counters_.unsent.fetch_add(1, std::memory_order_relaxed);
   const std::string why = std::generic_category().message(errno);
   if (const auto more = failed_.ask(clock_.steady())) {
     log_warning("OSC out: can't send to {}: {}{}", endpoint_text(to), why, *more);

@@ -59,6 +59,7 @@ void Streams::send_frame(int fd, Stream& stream, const Snapshot& snapshot) {
       send_batch(fd, stream.target.at, stream.frame.bytes(), stream.frame.datagram_sizes(), stream.segmentation);
   link_.counters.sent.fetch_add(result.sent, std::memory_order_relaxed);
   if (result.error == 0) return;
+  link_.counters.unsent.fetch_add(stream.frame.datagram_sizes().size() - result.sent, std::memory_order_relaxed);
   if (const auto more = lost_.ask(clock_.steady())) {
     log_warning("OSC out to {}: {} of {} datagrams of a frame not sent: {}; fewer streams, bodies or frames help{}",
                 endpoint_text(stream.target.at), stream.frame.datagram_sizes().size() - result.sent,

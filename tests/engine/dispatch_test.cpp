@@ -40,7 +40,7 @@ TEST(Dispatch, OneNumberWhereThereIsNoOwnAxisIsRefusedByName) {
   const std::vector<double> before = rig.everything();
   const Outcome by_name = rig.send("/physics/motor/angularvelocity", "arm", "slide", 1);
   EXPECT_EQ(by_name.kind, Kind::refused);
-  EXPECT_EQ(by_name.error, "/physics/body/arm/motor/slide: has no own axis for angular_velocity; give three numbers");
+  EXPECT_EQ(by_name.error, "motor 'arm/slide': has no own axis for angular_velocity; give three numbers");
   EXPECT_EQ(rig.send(motor("arm", "slide", "angular_velocity"), 1).kind, Kind::refused);
   // a body that has none at all is an answer as well, or the performer would wonder
   EXPECT_EQ(rig.send("/physics/motor/linearvelocity", "1", 1).kind, Kind::refused);
@@ -246,6 +246,35 @@ TEST(Dispatch, ButtonsPressAndLetGo) {
   }
 }
 
+// two programs that are aimed at each other must not ask and answer for ever
+TEST(Dispatch, NoAnswerIsAQuestion) {
+  Rig full;
+  struct {
+    Store store;
+    World world{store};
+    Dispatch dispatch{world};
+  } bare;
+  ASSERT_TRUE(bare.world.add_body("floor").ok());
+  const auto check = [](Dispatch& dispatch, const Message& question) {
+    dispatch.begin_tick();
+    const Outcome asked = dispatch.execute(question);
+    ASSERT_EQ(asked.kind, Kind::answered) << question.address << asked.error;
+    for (const Message& answer : asked.answers) EXPECT_NE(dispatch.execute(answer).kind, Kind::answered);
+  };
+  for (Dispatch* dispatch : {&full.dispatch, &bare.dispatch}) {
+    for (const char* list : {"/list/bodies", "/list/shapes"}) check(*dispatch, message(list));
+    for (const char* list : {"/list/parts", "/list/joints", "/list/motors"}) check(*dispatch, message(list, "floor"));
+    check(*dispatch, message("/get", "/physics/sim/*"));
+  }
+}
+
+TEST(Dispatch, AStaticPartIsNamedAsAllThingsAre) {
+  Rig rig;
+  EXPECT_EQ(rig.send("/physics/part/mass", "arm", "base", 2).error,
+            "part 'arm/base': it was made with mass 0 and never moves; make it with a mass instead");
+  EXPECT_EQ(rig.send("/physics/part/force", "arm", "base", 0, 0, 2).error, "part 'arm/base' is static and never moves");
+}
+
 TEST(Dispatch, ListsAndValuesAreAnswered) {
   Rig rig;
   const auto words = [](const Outcome& outcome) {
@@ -258,6 +287,7 @@ TEST(Dispatch, ListsAndValuesAreAnswered) {
   EXPECT_EQ(words(rig.send("/list/joints", "arm")), "/list/joints arm shoulder elbow slide");
   EXPECT_EQ(words(rig.send("/list/motors", 1)), "/list/motors 1 shoulder");
   EXPECT_EQ(words(rig.send("/list/shapes")), "/list/shapes ball ground");
+  EXPECT_EQ(words(rig.send("/list/joints", "floor")), "/list/joints floor ");
 
   const Outcome one = rig.send("/get", "/physics/body/arm/part/tip/position");
   ASSERT_EQ(one.answers.size(), 1U);

@@ -19,6 +19,48 @@ local ball = sim:add_body("ball")
 ball:add_part("ball", sim:add_sphere_shape("ball", 0.1), { position = vec3(0, 0, 100) })
 )";
 
+TEST(Engine, EveryCounterStandsInItsRow) {
+  Show show;
+  Counters& c = show.link.counters;
+  std::uint64_t value = 10;
+  for (auto* counter : {&c.received, &c.malformed, &c.denied, &c.unknown, &c.refused, &c.clamped, &c.dropped,
+                        &c.dropped_kernel, &c.sent, &c.unsent}) {
+    *counter = value++;
+  }
+  show.ticks(1);
+  double expected = 10;
+  for (const char* row : {"received", "malformed", "denied", "unknown", "refused", "clamped", "dropped",
+                          "dropped_kernel", "sent", "unsent"}) {
+    EXPECT_EQ(show.read(std::string("/osc/") + row), expected++) << row;
+  }
+}
+
+TEST(Engine, ALongTextOfARefusalIsCut) {
+  // an /error that repeats a name of four-byte escapes must still be OSC for who takes strings of 1024
+  Show show;
+  show.send("/physics/part/mass", "arm", std::string(1000, '\x01'), 1);
+  show.send("/" + std::string(1000, '\x01'), 1);
+  show.ticks(1);
+  std::vector<Outgoing> out;
+  show.link.outbox.drain(out);
+  ASSERT_EQ(out.size(), 2u);
+  for (const Outgoing& error : out) {
+    EXPECT_EQ(error.message.address, "/error");
+    EXPECT_LE(error.message.args.at(1).text.size(), 1000u);
+    EXPECT_EQ(error.message.args.at(1).text.find("there is no"), 0u);
+  }
+}
+
+TEST(Engine, TheInboxIsBoundedInBytes) {
+  // datagrams of 16 KiB whose arguments are 16384 flags grow fifty times in memory
+  EngineLink link;
+  Command flood{{{"/n", std::vector<Arg>(16384, Arg::of(true))}}, {}};
+  const std::size_t fit = EngineLink::kMostBytes / weight_of(flood);
+  EXPECT_LT(fit, 100u);
+  for (std::size_t i = 0; i < fit + 5; i++) EXPECT_EQ(link.inbox.push(flood), i < fit);
+  EXPECT_EQ(link.inbox.dropped(), 5u);
+}
+
 TEST(Engine, CommandsActBeforeTheirTicksPhysics) {
   const SceneFile scene(kBall);
   Show show(scene.path());
@@ -99,7 +141,7 @@ TEST(Engine, AnswersGoToWhoAsked) {
   show.link.outbox.drain(out);
   ASSERT_EQ(out.size(), 3U);
   EXPECT_EQ(text_of(out[0].message), "/physics/sim/substeps 4");
-  EXPECT_EQ(text_of(out[1].message), "/list/bodies");
+  EXPECT_EQ(text_of(out[1].message), "/list/bodies ");
   EXPECT_EQ(out[0].to, Outgoing::To::sender);
   EXPECT_EQ(out[1].origin.port, 2);
   EXPECT_EQ(out[2].to, Outgoing::To::error);

@@ -36,6 +36,22 @@ TEST(Held, NowPastAndFarDoNotWait) {
   EXPECT_EQ(held.offer(hand.ntp + 10 * kSecond, c), Verdict::held);
 }
 
+TEST(Held, BytesAreBoundedToo) {
+  HandClock hand;
+  const NetClock clock = hand.clock();
+  HeldCommands held(clock);
+  const std::string large(HeldCommands::kMostBytes / 2, 'x');
+  const auto offer = [&] {
+    Command c{{{"/n", {Arg::of(std::string_view(large))}}}, {}};
+    return held.offer(hand.ntp + kSecond, c);
+  };
+  EXPECT_EQ(offer(), Verdict::held);
+  EXPECT_EQ(offer(), Verdict::full) << "two halves and what surrounds them are more than the whole";
+  hand.turn(1);
+  ASSERT_TRUE(held.due());
+  EXPECT_EQ(offer(), Verdict::held) << "what went weighs no more";
+}
+
 TEST(Held, ComesInOrderOfTagsThenOfArrival) {
   HandClock hand;
   const NetClock clock = hand.clock();

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <future>
 
 #include "base/log.h"
 #include "osc/bad_packets.h"
@@ -184,6 +185,48 @@ TEST(Network, ScenePlanReplacesTheDefaultWhileRunning) {
             "OSC out 127.0.0.1:" + std::to_string(second.end().port) + " (pos+rot+relrot at 60 Hz)");
   first.send(network.bound()[1], numbered(5));
   ASSERT_TRUE(engine.wait_for(1));
+  network.stop();
+  log_to_stderr(true);
+}
+
+// a name server that lets one wait holds up nobody but the target that needs it
+TEST(Network, NamesAreLookedUpBesides) {
+  log_to_stderr(false);
+  FakeEngine engine;
+  const Client numeric, named;
+  std::promise<void> answer;
+  const std::shared_future<void> answered = answer.get_future().share();
+  const LookUp slow = [answered](const std::string& host, std::uint16_t port) -> Result<Endpoint> {
+    answered.wait();
+    if (host == "nobody.example") return Error{"no IPv4 address for 'nobody.example'"};
+    return Endpoint{0x7f000001, port};
+  };
+  OscOptions options;
+  options.in = *parse_osc_in("0");
+  Network network(engine.link, options, kTestOffsets, {}, slow);
+  const auto plan = engine.link.osc_plan.spare();
+  plan->targets = {StreamTarget{.host = "127.0.0.1", .port = numeric.end().port}};
+  engine.link.osc_plan.publish(plan);
+  ASSERT_TRUE(network.start().ok());
+
+  const std::uint64_t errors = log_count(LogLevel::error);
+  const auto second = engine.link.osc_plan.spare();
+  second->targets = {StreamTarget{.host = "slow.example", .port = named.end().port},
+                     StreamTarget{.host = "nobody.example", .port = 9},
+                     StreamTarget{.host = "localhost", .port = numeric.end().port}};
+  engine.link.osc_plan.publish(second);
+  engine.link.wake_network();
+  publish(engine.link, test_world({{"arm", 1}}));
+  for (int i = 0; i < 3; i++) ASSERT_TRUE(numeric.receive());
+  const std::string port = std::to_string(numeric.end().port);
+  while (network.lines().at(1) != "OSC out localhost:" + port + " (pos+rot+relrot at 60 Hz)") {
+    ASSERT_TRUE(numeric.receive());
+  }
+  EXPECT_EQ(network.lines().size(), 2u) << "the others are on their way";
+  answer.set_value();
+  ASSERT_TRUE(named.receive());
+  while (log_count(LogLevel::error) == errors) ASSERT_TRUE(named.receive());
+  EXPECT_EQ(log_count(LogLevel::error), errors + 1);
   network.stop();
   log_to_stderr(true);
 }

@@ -147,7 +147,7 @@ TEST(Receiver, AllowListIsAskedBeforeAnythingIsRead) {
   desk.take(numbered(4), {0x0a000002u, 1});
   desk.take("bad", {0x0a000002u, 1});
   EXPECT_EQ(desk.numbers(), (std::vector<double>{1, 3}));
-  EXPECT_EQ(desk.receiver.denied(), 3u);
+  EXPECT_EQ(desk.engine.link.counters.denied, 3u);
   EXPECT_EQ(desk.engine.link.counters.malformed, 0u);
   log_to_stderr(true);
 }

@@ -105,13 +105,26 @@ TEST(Sender, TenErrorsASecondPerSender) {
 
 TEST(Sender, AnswersAndStreamsAreNeverAnswered) {
   Desk desk;
-  for (const char* address : {"/error", "/pong", "/physics/joint/pos", "/physics/joint/rot", "/physics/joint/relrot",
-                              "/physics/joint/relpos"}) {
+  for (const char* address :
+       {"/error", "/pong", "/physics/joint/pos", "/physics/joint/rot", "/physics/joint/relrot", "/physics/joint/relpos",
+        "/physics/contact", "/transport/state", "/script/error", "/script/ok"}) {
     desk.sender.send({Outgoing::To::error, origin_of(desk.asker), error_about(address)});
   }
   EXPECT_EQ(waiting(desk.asker), 0);
   EXPECT_EQ(waiting(desk.watcher), 0);
   EXPECT_EQ(desk.counters.sent, 0u);
+}
+
+TEST(Sender, WhatTheSystemDoesNotTakeIsCounted) {
+  log_to_stderr(false);
+  Desk desk;
+  // no datagram goes to port 0
+  StreamTarget wish;
+  desk.sender.set_targets({{wish, {0x7f000001, 0}}});
+  for (int i = 0; i < 3; i++) desk.sender.send({Outgoing::To::targets, {}, {"/a", {}}});
+  EXPECT_EQ(desk.counters.unsent, 3u);
+  EXPECT_EQ(desk.counters.sent, 0u);
+  log_to_stderr(true);
 }
 
 TEST(Sender, NoAddressNoAnswer) {
