@@ -21,6 +21,8 @@ using MeshSoup = std::vector<Vec3>;
 /// triangles at most kMostMeshTriangles. The error names the line of a text, and the cure. [any]
 Result<MeshSoup> soup_from_stl(std::string_view bytes);
 Result<MeshSoup> soup_from_obj(std::string_view bytes);
+/// The scene that is shown, in metres by its unit, no axis turned. Skins and morphs are taken as they were modelled, of
+/// polygons with holes the outline; a skew, an instance of nothing, and more than 32 MB are refused.
 Result<MeshSoup> soup_from_collada(std::string_view bytes);
 
 /// "line 3: 'x' is no finite number. Export …": what stands at fault, with the cure that fits every text. [any]
