@@ -30,7 +30,7 @@ std::string initial_text(const Row& row) {
   if (!row.choices.empty()) return row.choices[static_cast<std::size_t>(row.initial[0])];
   if (row.type == RowType::boolean || row.type == RowType::flags3) {
     std::vector<std::string_view> truths;
-    for (std::uint32_t i = 0; i < row.width; i++) truths.push_back(row.initial[i] != 0 ? "true" : "false");
+    for (std::uint32_t i = 0; i < row.width; i++) truths.emplace_back(row.initial[i] != 0 ? "true" : "false");
     return fmt::format("{}", fmt::join(truths, " "));
   }
   return fmt::format("{:g}", fmt::join(row.initial.begin(), row.initial.begin() + row.width, " "));

@@ -66,8 +66,9 @@ TEST(Clients, OscdumpReadsTheStreams) {
 
 TEST(Clients, PureDataPlaysReadsAndIsAnswered) {
   Player player;
-  Running pd({"pd", "-nogui", "-nosound", "-noprefs", "-stderr", "-open", LIMBER_SOURCE_DIR "/tests/app/play.pd",
-              "-send", "ports " + player.in + " " + player.out});
+  const std::string patch = std::string(LIMBER_SOURCE_DIR) + "/tests/app/play.pd";
+  Running pd({"pd", "-nogui", "-nosound", "-noprefs", "-stderr", "-open", patch, "-send",
+              "ports " + player.in + " " + player.out});
   EXPECT_TRUE(player.running.wait_for("gravity\t-3\n", true)) << player.running.out() << pd.err();
   EXPECT_TRUE(player.running.wait_for("friction\t0.75\n", true)) << player.running.out() << pd.err();
   EXPECT_TRUE(pd.wait_for("pos: arm 1 2 3")) << pd.err();

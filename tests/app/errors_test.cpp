@@ -150,11 +150,11 @@ TEST(Errors, EachRefusalIsAsTheTableSays) {
 std::vector<std::string> refusal_texts(const std::string& source) {
   std::vector<std::string> texts;
   // a text may hold a semicolon: a statement ends with the line
-  static const std::regex kRefusal(R"re((Error\{|fail\(k|leave\(|return fmt::format\(|return ")[\s\S]*?;\n)re");
-  static const std::regex kLiteral(R"re("((?:[^"\\]|\\.)*)")re");
-  for (std::sregex_iterator at(source.begin(), source.end(), kRefusal), end; at != end; ++at) {
+  static const std::regex refusal(R"re((Error\{|fail\(k|leave\(|return fmt::format\(|return ")[\s\S]*?;\n)re");
+  static const std::regex literal(R"re("((?:[^"\\]|\\.)*)")re");
+  for (std::sregex_iterator at(source.begin(), source.end(), refusal), end; at != end; ++at) {
     const std::string statement = at->str();
-    for (std::sregex_iterator l(statement.begin(), statement.end(), kLiteral), none; l != none; ++l) {
+    for (std::sregex_iterator l(statement.begin(), statement.end(), literal), none; l != none; ++l) {
       std::string text = (*l)[1];
       replace_all(text, "limber: ", "");
       replace_all(text, "\\n", "");

@@ -37,6 +37,7 @@ class Running {
     int err[2];
     if (pipe2(out, O_CLOEXEC) != 0 || pipe2(err, O_CLOEXEC) != 0) std::abort();
     std::vector<char*> argv;
+    argv.reserve(words.size() + 1);
     for (const std::string& word : words) argv.push_back(const_cast<char*>(word.c_str()));
     argv.push_back(nullptr);
     pid_ = fork();
@@ -156,7 +157,7 @@ class Folder {
 inline std::string install_copy(const Folder& folder) {
   folder.file("share/limber/scripts/far.lua", "print('far')\n");
   folder.file("share/limber/urdf/readme", "");
-  const std::string program = folder.file("bin/limber", "");
+  std::string program = folder.file("bin/limber", "");
   std::filesystem::copy_file(LIMBER_PROGRAM, program, std::filesystem::copy_options::overwrite_existing);
   std::filesystem::permissions(program, std::filesystem::perms::owner_all);
   return program;

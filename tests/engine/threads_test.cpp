@@ -52,8 +52,10 @@ TEST(Threads, ManyHandsOneEngineManyReaders) {
   std::atomic<bool> over{false};
   std::thread sim([&] { engine.run(); });
   std::vector<std::thread> readers;
+  readers.reserve(3);
   for (int i = 0; i < 3; i++) readers.emplace_back([&] { read_snapshots(link, over); });
   std::vector<std::thread> writers;
+  writers.reserve(kWriters);
   for (int i = 0; i < kWriters; i++) writers.emplace_back([&, i] { write_commands(link, i); });
   // the network's part: takes what goes out
   int got = 0;
