@@ -59,11 +59,25 @@ std::string_view ElementWords::next() {
   }
 }
 
+namespace {
+
+/// A finite number. Some exporters write all of a file as their country does, 0,01: one comma is a point.
+std::optional<double> number_in(std::string_view word) {
+  const std::optional<double> number = parse_number(word);
+  const std::size_t comma = word.find(',');
+  if (number || comma == std::string_view::npos || word.find('.') != std::string_view::npos) return number;
+  std::string pointed(word);
+  pointed[comma] = '.';
+  return parse_number(pointed);
+}
+
+}  // namespace
+
 Result<std::vector<double>> numbers_of(const Element* element, std::size_t least) {
   std::vector<double> numbers;
   ElementWords words(element);
   for (std::string_view word = words.next(); !word.empty(); word = words.next()) {
-    const std::optional<double> number = parse_number(word);
+    const std::optional<double> number = number_in(word);
     if (!number) return mesh_fault(words.line(), fmt::format("{} is no finite number", quoted_word(word)));
     numbers.push_back(*number);
   }
@@ -100,10 +114,7 @@ Result<Placement> unit_of(const Element* root) {
   const Element* unit = asset ? asset->FirstChildElement("unit") : nullptr;
   const char* text = unit ? unit->Attribute("meter") : nullptr;
   if (!text) return Placement{};
-  // a well-known exporter writes this one number as its country does: 0,01
-  std::string number = text;
-  std::replace(number.begin(), number.end(), ',', '.');
-  const std::optional<double> meter = parse_number(number);
+  const std::optional<double> meter = number_in(text);
   if (meter && *meter > 0) return Placement{Mat3(*meter), Vec3(0)};
   return fault_at(unit, fmt::format("meter={} can't be", quoted_word(text)));
 }

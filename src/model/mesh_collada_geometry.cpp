@@ -177,7 +177,7 @@ Result<void> Geometries::read_list(const Element* list, const Layout& layout, st
 Result<void> Geometries::read_joined(const Element* primitive, const Layout& layout, MeshSoup& soup) {
   std::vector<Vec3> corners;
   for (const Element* p = primitive->FirstChildElement("p"); p; p = p->NextSiblingElement("p")) {
-    if (const Result<void> read = read_list(p, layout, corners); !read) return read;
+    if (Result<void> read = read_list(p, layout, corners); !read) return read;
   }
   std::size_t found = corners.size() / 3;
   if (kind_of(primitive) == Kind::polylist) {
@@ -208,7 +208,7 @@ Result<void> Geometries::read_each(const Element* primitive, const Layout& layou
     const Element* list = is_named(e, "ph") ? e->FirstChildElement("p") : e;
     if (!list || !is_named(list, "p")) continue;
     corners.clear();
-    if (const Result<void> read = read_list(list, layout, corners); !read) return read;
+    if (Result<void> read = read_list(list, layout, corners); !read) return read;
     if (kind == Kind::polygons) {
       cutter_.cut(corners, soup);
     } else if (kind == Kind::trifans) {

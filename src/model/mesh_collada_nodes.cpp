@@ -29,8 +29,8 @@ Placement looking(const Vec3& eye, const Vec3& interest, const Vec3& up) {
 
 Placement matrix(const std::vector<double>& rows) {
   Placement out;
-  for (int row = 0; row < 3; ++row) {
-    const auto at = static_cast<std::size_t>(4 * row);
+  std::size_t at = 0;
+  for (int row = 0; row < 3; ++row, at += 4) {
     for (int column = 0; column < 3; ++column) out.turn[column][row] = rows[at + static_cast<std::size_t>(column)];
     out.shift[row] = rows[at + 3];
   }
@@ -115,7 +115,7 @@ class SceneReader {
       } else if (is_named(e, "instance_geometry") || is_named(e, "instance_controller")) {
         node.shapes.push_back(shape_of(e));
         if (!node.shapes.back()) return missing(e, "geometry");
-      } else if (const Result<void> applied = apply(e, node.place); !applied) {
+      } else if (Result<void> applied = apply(e, node.place); !applied) {
         return applied;
       }
     }

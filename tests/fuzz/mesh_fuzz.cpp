@@ -16,6 +16,7 @@ void must(bool condition) {
 
 }  // namespace
 
+// NOLINTNEXTLINE(readability-identifier-naming): libFuzzer's name
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   if (size == 0) return 0;
   constexpr std::array kFormats{limber::MeshFormat::stl, limber::MeshFormat::obj, limber::MeshFormat::dae};

@@ -150,6 +150,7 @@ TEST(MeshCollada, UnitsScaleTheWholeScene) {
   expect_soup(soup_of(text), {{1.01, 0, 0}, {1, 0.01, 0}, {1, 0, 0.01}}, "centimetres");
   std::string comma = text;
   comma.replace(comma.find("0.01"), 4, "0,010000");
+  comma.replace(comma.find("100 0 0"), 7, "1,00e2 0,0 -0,000");
   expect_soup(soup_of(comma), soup_of(text), "a decimal comma");
   for (const char* bad : {"0", "-1", "inf", "x", "1,0.1", ""}) {
     std::string broken = text;

@@ -77,6 +77,7 @@ TEST(MeshSoup, OutlinesWithABridgeToAHoleAreCut) {
 TEST(MeshSoup, HostileOutlinesEndAndKeepTheirCount) {
   // a zigzag that crosses itself has no ears to speak of; the steps run out, and a fan is made of what is left
   std::vector<Vec3> zigzag;
+  zigzag.reserve(20'011);
   for (int i = 0; i < 20'011; ++i) zigzag.emplace_back(i * 7919 % 20'011, i * 104'729 % 20'011, i % 3);
   EXPECT_EQ(cut(zigzag).size(), 3 * (zigzag.size() - 2));
   const std::vector<Vec3> point(1000, Vec3(1, 2, 3));

@@ -1,4 +1,5 @@
 // STL as programs really write it, and what is wrong with broken ones.
+#include <algorithm>
 #include <cmath>
 #include <cstring>
 
@@ -26,15 +27,20 @@ std::string facet(const std::string& vertices, const std::string& normal = "0 0 
 
 TEST(MeshStl, AsciiIsReadInEveryHandwriting) {
   const std::string vertices = "vertex 0 0 0\nvertex 1 0 0\nvertex 0 0.5 -2\n";
+  std::string old_mac = "solid a\n" + facet(vertices) + "endsolid a\n";
+  std::replace(old_mac.begin(), old_mac.end(), '\n', '\r');
+  const std::string loud =
+      "SOLID A B\nFACET NORMAL 0 0 1\nOUTER LOOP\nVERTEX 0 0 0\nVertex 1 0 0\nVERTEX 0 .5 -2.\nENDLOOP\nENDFACET\n"
+      "ENDSOLID A B\n";
+  const std::string windows =
+      "solid a\r\nfacet normal 0 0 1\r\nouter loop\r\nvertex 0 0 0\r\nvertex 1 0 0\r\nvertex 0 0.5 -2\r\nendloop\r\n"
+      "endfacet\r\nendsolid a\r\n";
   const std::string texts[] = {
       "solid a\n" + facet(vertices) + "endsolid a\n",
       "\n  solid\n" + facet(vertices) + "endsolid",
-      "SOLID A B\nFACET NORMAL 0 0 1\nOUTER LOOP\nVERTEX 0 0 0\nVertex 1 0 0\nVERTEX 0 .5 -2.\nENDLOOP\nENDFACET\n"
-      "ENDSOLID A B\n",
-      "solid a\r\nfacet normal 0 0 1\r\nouter loop\r\nvertex 0 0 0\r\nvertex 1 0 0\r\nvertex 0 0.5 -2\r\nendloop\r\n"
-      "endfacet\r\nendsolid a\r\n",
-      "solid a\r" + std::string("facet normal 0 0 1\router loop\rvertex 0 0 0\rvertex 1 0 0\rvertex 0 0.5 -2\rendloop\r"
-                                "endfacet\rendsolid a\r"),
+      loud,
+      windows,
+      old_mac,
       "solid caf\xC3\xA9 facet vertex\n" + facet(vertices) + "endsolid\n",
       "solid a\n" + facet("vertex +0.0e0 0E+5 -0\nvertex 1.0000e+00 0 0\nvertex 0 5e-1 -0.2E1\n") + "endsolid a\n",
       "solid a\n" + facet(vertices, "nan -nan(ind) inf") + "endsolid a\n"};
