@@ -129,7 +129,7 @@ fuzz_runs() {
   case $1 in
     osc*) echo 250000 ;;
     mesh*) echo 4000 ;;
-    *) echo 20000 ;;
+    *) echo 4000 ;;
   esac
 }
 
