@@ -124,10 +124,12 @@ class Scanner {
   /// Remembers an attribute's value without quotes after the '=' at `equals`; gives where to go on.
   std::size_t note_bare_value(std::size_t equals) {
     const std::size_t from = text_.find_first_not_of(" \t\r\n", equals + 1);
-    if (from == std::string::npos || text_.find_first_of("\"'<>=/", from) == from) return equals;
+    if (from == std::string::npos || std::string_view("\"'<>=/").find(text_[from]) != std::string_view::npos)
+      return equals;
     std::size_t to = std::min(text_.find_first_of(" \t\r\n>", from), text_.size());
     if (to < text_.size() && text_[to] == '>' && text_[to - 1] == '/') --to;
-    if (text_.find_first_of("\"'<", from) < to) return equals;
+    // within the value alone: a look to the end of the text for each value would take quadratic time
+    if (std::string_view(text_).substr(from, to - from).find_first_of("\"'<") != std::string_view::npos) return equals;
     bare_.emplace_back(from, to);
     return to - 1;
   }

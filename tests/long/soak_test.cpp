@@ -1,0 +1,125 @@
+// An hour of stage time, in minutes: a flood of messages, bodies that come and go, memory that stays; and a flood of
+// datagrams against the running program.
+#include <malloc.h>
+
+#include <string>
+
+#include "app/program.h"
+#include "engine/show.h"
+#include "osc/bad_packets.h"
+#include "osc/osc_test_tools.h"
+
+namespace limber {
+namespace {
+
+using engine_test::Show;
+
+constexpr int kMinute = 3600;  // ticks
+constexpr int kHour = 60 * kMinute;
+
+const char* const kBusyScene = R"lua(
+local arm = sim:load_urdf(ARM, { name = "arm" })
+local n, living = 0, {}
+sim:on_step(function(dt)
+  for i, motor in ipairs(arm.motors) do motor.target = 0.3 * math.sin(sim.time + i) end
+  if sim.tick % 30 == 0 then
+    n = n + 1
+    living[#living + 1] = arm:copy("copy" .. n, { position = vec3(n % 7, 2 + n % 5, 0) })
+    if #living > 4 then table.remove(living, 1):remove() end
+  end
+end)
+osc:on("/hit", function(x) state.last = { x, tostring(x) } end)
+)lua";
+
+std::string busy_scene() { return fmt::format("local ARM = '{}/urdf/arm6.urdf'\n{}", LIMBER_SOURCE_DIR, kBusyScene); }
+
+// twenty messages a tick: values, refusals, questions, handlers; of a tick's number alone
+void flood(Show& show, int tick) {
+  for (int i = 0; i < 4; i++) {
+    show.send("/physics/motor/angularservoposition", "arm", i + 1, 0.01 * (tick % 50));
+    show.send("/physics/motor/angularservopositoin", "arm", i + 1, 1);
+    show.send("/physics/body/copy*/part/*/friction", 0.1 + 0.001 * (tick % 300));
+    show.send("/list/joints", "arm");
+    show.send("/hit", tick);
+  }
+}
+
+double heap() { return static_cast<double>(mallinfo2().uordblks); }
+
+double resident() {
+  std::ifstream statm("/proc/self/statm");
+  double all = 0;
+  double mine = 0;
+  statm >> all >> mine;
+  return mine * 4096;
+}
+
+TEST(Soak, MemoryIsFlatFromTheTenthMinuteOfAnHour) {
+  const engine_test::SceneFile scene(busy_scene());
+  Show show(scene.path());
+  double heap_then = 0;
+  double resident_then = 0;
+  for (int tick = 0; tick < kHour; tick++) {
+    flood(show, tick);
+    show.ticks(1);
+    show.outbox();
+    if (tick == 10 * kMinute) {
+      heap_then = heap();
+      resident_then = resident();
+    }
+  }
+  EXPECT_LT(heap(), 1.01 * heap_then);
+  EXPECT_LT(resident(), 1.01 * resident_then);
+  EXPECT_EQ(show.link.inbox.dropped(), 0U);
+  fmt::print("heap {:.3f} MB at minute 10, {:.3f} at the end; resident {:.1f} and {:.1f} MB\n", heap_then / 1e6,
+             heap() / 1e6, resident_then / 1e6, resident() / 1e6);
+}
+
+TEST(Soak, AFloodOfQuestionsAndRefusalsLeavesTheMotionAsItIs) {
+  const engine_test::SceneFile scene(busy_scene());
+  Show quiet(scene.path());
+  Show loud(scene.path());
+  for (int tick = 0; tick < 10 * kMinute; tick++) {
+    for (int i = 0; i < 20; i++) {
+      loud.send("/physics/motor/angularservopositoin", "arm", i, 1);
+      loud.send("/physics/part/mass", "nobody", "tip", 1);
+      loud.send("/list/parts", "arm");
+    }
+    loud.ticks(1);
+    quiet.ticks(1);
+    loud.outbox();
+  }
+  EXPECT_EQ(loud.engine.state_hash(), quiet.engine.state_hash());
+}
+
+// as fast as one client can, good, wrong and malformed ones in turn; then the program answers as if nothing was
+TEST(Flood, AMillionDatagramsAndTheProgramAnswers) {
+  app_test::Running program(
+      app_test::limber({"play", "scripts/hello.lua", "--headless", "--osc-in", "0", "--osc-out", "off"}));
+  ASSERT_TRUE(program.wait_for("OSC in 127.0.0.1:"));
+  ASSERT_TRUE(program.wait_for("playing headless"));
+  const std::string& said = program.err();
+  const std::size_t at = said.find("OSC in 127.0.0.1:");
+  ASSERT_NE(at, std::string::npos) << said;
+  const osc_test::Client client;
+  const Endpoint end{0x7f000001, static_cast<std::uint16_t>(std::stoi(said.substr(at + 17)))};
+  const auto bad = osc_test::bad_packets();
+  const std::string good =
+      osc_test::Bytes().text("/physics/motor/target").text(",ssf").text("*").text("*").f(0.1f).str();
+  for (std::size_t i = 0; i < 1'000'000; i++) client.send(end, i % 3 == 0 ? good : bad[i % bad.size()].bytes);
+  // what the kernel could not keep is lost; a later question is not
+  for (int tries = 0; tries < 100; tries++) {
+    client.send(end, osc_test::Bytes().text("/ping").text(",").str());
+    for (auto answer = client.receive(200); answer; answer = client.receive(200)) {
+      if (!answer->starts_with("/pong")) continue;
+      program.signal(SIGINT);
+      const app_test::Ran ran = program.finish();
+      EXPECT_EQ(ran.code, 0) << ran.err;
+      return;
+    }
+  }
+  FAIL() << "no answer:\n" << program.err();
+}
+
+}  // namespace
+}  // namespace limber
