@@ -112,7 +112,8 @@ TEST_F(Crane, Mistakes) {
   EXPECT_EQ(crane_fault("{ fixed_base = 1 }"), at + "load_urdf: fixed_base is true or false, not 1");
   EXPECT_EQ(crane_fault("{ fixed_bas = true }"), at + "load_urdf: opts has no 'fixed_bas'; did you mean 'fixed_base'?");
   const std::string posed = crane_fault("{ pose = { lfit = 1, lift = 1 } }");
-  EXPECT_NE(posed.find("pose: 'crane' has no joint 'lfit' that moves; did you mean 'lift'?"), std::string::npos) << posed;
+  EXPECT_NE(posed.find("pose: 'crane' has no joint 'lfit' that moves; did you mean 'lift'?"), std::string::npos)
+      << posed;
   EXPECT_EQ(crane_fault("{ pose = { lift = 'up' } }"), at + "load_urdf: pose, lift takes a number, not 'up'");
   EXPECT_EQ(crane_fault("5"), at + "load_urdf: opts is a table, not 5");
   Stage broken;
