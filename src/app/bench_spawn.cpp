@@ -31,7 +31,8 @@ nlohmann::ordered_json bench_spawn(const BenchOptions&) {
     const Result<Body*> copy = world.copy_body(**first, fmt::format("arm{}", i));
     LIMBER_CHECK(copy.ok());
     Pose pose = (*copy)->pose();
-    pose.position += Vec3(2.0 * (i % kSide), 2.0 * (i / kSide), 0);
+    const int row = i / kSide;
+    pose.position += Vec3(2.0 * (i % kSide), 2.0 * row, 0);
     (*copy)->set_pose(pose);
   }
   const double copied = bench_seconds();

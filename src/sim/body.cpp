@@ -47,6 +47,9 @@ const Table& Body::table() {
           state(view<&Body::read_angular_velocity, &Body::write_angular_velocity>(
               vec3("angular_velocity", "rad/s", {0, 0, 0}, -1e4, 1e4,
                    "The root's; setting it turns the whole body about the root."))),
+          effect<&Body::effect_self_collision>(
+              boolean("self_collision", true,
+                      "Whether its parts collide with each other; two that a joint connects never do.")),
           live(state(effect<&Body::effect_enabled>(boolean(
               "enabled", true, "False: out of the world, as health leaves a body that broke twice; reset enables.")))),
           act<&Body::act_reset>(action("reset", 0, 0, "Back to the start pose, at rest.")),
@@ -214,7 +217,8 @@ void Body::build_copy(const Body& source) {
     part.set_start_pose(from->start_pose());
     copy_values(from->id(), part.id(), Part::table());
   }
-  *store().live_block(id_) = *store().live_block(source.id_);  // enabled
+  *store().live_block(id_) = *store().live_block(source.id_);                 // enabled
+  *store().kept_block(id_) = *std::as_const(store()).kept_block(source.id_);  // self_collision
   store().apply_marks();
   // to the bit: what the store tells of a pose has gone through a quaternion
   for (std::size_t i = 0; i < parts_.size(); i++) parts_[i]->stand_like(*source.parts_[i]);
@@ -267,8 +271,16 @@ void Body::effect_enabled() {
 // in one place, and there each would meet all others.
 void Body::enter() {
   if (!in_world_) return;
+  const bool parts_came = entered_parts_ < parts_.size();
   for (; entered_parts_ < parts_.size(); entered_parts_++) parts_[entered_parts_]->enter();
+  if (parts_came) effect_self_collision();
   for (; entered_joints_ < joints_.size(); entered_joints_++) joints_[entered_joints_]->enter();
+}
+
+void Body::effect_self_collision() {
+  const bool collide = store().values(id_, table().at("self_collision"))[0] != 0;
+  const int group = collide ? -1 : static_cast<int>(id_.slot);
+  for (const auto& part : parts_) world_.bullet().set_apart(part->rigid(), group);
 }
 
 void Body::reset() {
@@ -322,6 +334,7 @@ std::uint64_t Body::state_hash(std::uint64_t hash) const {
   hash = hash_bytes(name(), hash);
   const bool on = enabled();
   mix(&on, sizeof on);
+  mix_kept(id_, table());
   for (const auto& part : parts_) {
     const btTransform& t = part->rigid().getWorldTransform();
     for (int i = 0; i < 3; i++) mix(t.getBasis()[i].m_floats, 3 * sizeof(btScalar));

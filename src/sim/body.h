@@ -90,6 +90,7 @@ class Body {
   void enter();
   void settle_joints();
   void effect_enabled();
+  void effect_self_collision();
   void read_position(double* out) const;
   void write_position(const double* in);
   void read_rotation(double* out) const;

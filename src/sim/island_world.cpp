@@ -26,6 +26,16 @@ void zero(btAlignedObjectArray<int>& a, int size) {
   for (int i = 0; i < size; ++i) a[i] = 0;
 }
 
+// Bullet's, but for the groups of set_apart
+class Dispatcher : public btCollisionDispatcher {
+ public:
+  using btCollisionDispatcher::btCollisionDispatcher;
+  bool needsCollision(const btCollisionObject* a, const btCollisionObject* b) override {
+    if (a->getUserIndex2() >= 0 && a->getUserIndex2() == b->getUserIndex2()) return false;
+    return btCollisionDispatcher::needsCollision(a, b);
+  }
+};
+
 }  // namespace
 
 WorldParts::WorldParts(const WorldSetup& setup) {
@@ -33,7 +43,7 @@ WorldParts::WorldParts(const WorldSetup& setup) {
   // Bullet's own pool of 4096 contact pairs: a larger one makes a new world slow (100 ms for 65536), and more pairs
   // than it holds cost no measurable time (arms-1000)
   configuration = std::make_unique<btDefaultCollisionConfiguration>();
-  dispatcher = std::make_unique<btCollisionDispatcher>(configuration.get());
+  dispatcher = std::make_unique<Dispatcher>(configuration.get());
   broadphase = std::make_unique<btDbvtBroadphase>();
   // every pair is looked at in every step, so that a pair's life does not depend on how many others there are
   broadphase->m_cupdates = 100;
@@ -75,6 +85,14 @@ void IslandWorld::addConstraint(btTypedConstraint* constraint, bool disable_coll
   // contacts that the two have already would be solved for ever
   btOverlappingPairCache* pairs = getPairCache();
   if (btBroadphasePair* pair = pairs->findPair(a, b)) pairs->cleanOverlappingPair(*pair, getDispatcher());
+}
+
+void IslandWorld::set_apart(btCollisionObject& object, int group) {
+  if (object.getUserIndex2() == group) return;
+  object.setUserIndex2(group);
+  // contacts that are there already would be solved for ever
+  btBroadphaseProxy* proxy = object.getBroadphaseHandle();
+  if (proxy != nullptr) getPairCache()->cleanProxyFromPairs(proxy, getDispatcher());
 }
 
 void IslandWorld::removeConstraint(btTypedConstraint* constraint) {

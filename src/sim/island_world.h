@@ -73,6 +73,9 @@ class IslandWorld : private WorldParts, public btDiscreteDynamicsWorld {
   void addConstraint(btTypedConstraint* constraint, bool disable_collisions = true) override;
   void removeConstraint(btTypedConstraint* constraint) override;
 
+  /// Objects of one group, >= 0, don't collide with each other from now on; -1: of none.
+  void set_apart(btCollisionObject& object, int group);
+
   IslandSolver& island_solver() { return *solver; }
 
  protected:

@@ -193,6 +193,30 @@ void body_enabled() {
   EXPECT_NEAR(ball.pose().position.z, 5 - fall(10, 1.0 / 240, 48), 1e-5);
 }
 
+// a ball on a static one of the same body; and one of another body, which always collides
+void body_self_collision() {
+  Stage s;
+  s.gravity({0, 0, -10});
+  Body& body = s.body("two");
+  s.part(body, sphere_model(0.1), 0);
+  Part& ball = s.part(body, sphere_model(0.1), 1, {{0, 0, 0.2}, quat_identity()});
+  s.ticks(60);
+  EXPECT_NEAR(ball.pose().position.z, 0.2, 0.002);
+  const double rest = ball.pose().position.z;
+  s.set(body.id(), "self_collision", {0});
+  s.ticks(6);
+  // the contact that it had holds it no longer
+  EXPECT_NEAR(ball.pose().position.z, rest - fall(10, 1.0 / 240, 24), 1e-5);
+  Body& copy = **s.world.copy_body(body, "copy");
+  copy.set_pose({{3, 0, 0}, quat_identity()});
+  Part& dropped = *copy.parts()[1];
+  const double from = dropped.pose().position.z;
+  Part& foreign = s.lone(sphere_model(0.1), 1, {{3, 0, 0.2}, quat_identity()});
+  s.ticks(6);
+  EXPECT_LT(dropped.pose().position.z, from - fall(10, 1.0 / 240, 24));
+  EXPECT_NEAR(foreign.pose().position.z, 0.2, 0.01);
+}
+
 }  // namespace
 
 void add_world_effects(RowEffects& effects) {
@@ -212,6 +236,7 @@ void add_body_effects(RowEffects& effects) {
   effects[{"Body", "linear_velocity"}] = body_linear_velocity;
   effects[{"Body", "angular_velocity"}] = body_angular_velocity;
   effects[{"Body", "enabled"}] = body_enabled;
+  effects[{"Body", "self_collision"}] = body_self_collision;
 }
 
 }  // namespace limber::test
