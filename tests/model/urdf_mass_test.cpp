@@ -7,23 +7,14 @@
 #include <gtest/gtest.h>
 
 #include "import_text.h"
+#include "robots.h"
 
 namespace limber {
 namespace {
 
 using test::import_text;
+using test::kFixed;
 using test::says;
-
-// a plate of 1 kg with a second one of 3 kg fixed 0.4 m beside it, turned by a quarter about z
-constexpr const char* kFixed = R"(<robot name="r"><link name="base"/>
-<link name="a"><inertial><mass value="1"/><inertia ixx="0.1" ixy="0" ixz="0" iyy="0.2" iyz="0" izz="0.25"/></inertial>
-  <collision><geometry><box size="0.1 0.1 0.1"/></geometry></collision></link>
-<link name="b"><inertial><origin xyz="0.1 0 0"/><mass value="3"/><inertia ixx="0.1" ixy="0" ixz="0" iyy="0.2" iyz="0" izz="0.25"/></inertial>
-  <collision><origin xyz="0.1 0 0"/><geometry><sphere radius="0.1"/></geometry></collision></link>
-<link name="mark"/>
-<joint name="j" type="continuous"><parent link="base"/><child link="a"/><axis xyz="0 0 1"/></joint>
-<joint name="weld" type="fixed"><parent link="a"/><child link="b"/><origin xyz="0.4 0 0" rpy="0 0 1.5707963267948966"/></joint>
-<joint name="mark_weld" type="fixed"><parent link="b"/><child link="mark"/><origin xyz="0 0 1"/></joint></robot>)";
 
 TEST(UrdfMass, FixedChildrenAreMergedWithTheirInertia) {
   const BodyModel m = import_text(kFixed);

@@ -7,32 +7,17 @@
 #include <gtest/gtest.h>
 
 #include "import_text.h"
+#include "robots.h"
 
 namespace limber {
 namespace {
 
 using test::import_text;
+using test::kArm;
 using test::says;
 using test::try_import;
 
 constexpr double kHalf = kPi / 2;
-
-// an upright arm: hinge about z at 1 m, hinge about -y at 2 m, slide along a slanted axis
-constexpr const char* kArm = R"(<?xml version="1.0"?>
-<robot name="arm">
-  <link name="base"/>
-  <link name="upper"><inertial><mass value="2"/><inertia ixx="1" ixy="0" ixz="0" iyy="1" iyz="0" izz="1"/></inertial></link>
-  <link name="lower"><inertial><mass value="1"/><inertia ixx="1" ixy="0" ixz="0" iyy="1" iyz="0" izz="1"/></inertial></link>
-  <link name="tip"><inertial><mass value="1"/><inertia ixx="1" ixy="0" ixz="0" iyy="1" iyz="0" izz="1"/></inertial></link>
-  <joint name="elbow" type="revolute"><parent link="upper"/><child link="lower"/>
-    <origin xyz="0 0 1" rpy="0 0 1.5707963267948966"/><axis xyz="0 -1 0"/>
-    <limit lower="0.5" upper="2" effort="3" velocity="4"/></joint>
-  <joint name="shoulder" type="revolute"><parent link="base"/><child link="upper"/>
-    <origin xyz="0 0 1"/><axis xyz="0 0 2"/><limit effort="5" velocity="6"/></joint>
-  <joint name="slide" type="prismatic"><parent link="lower"/><child link="tip"/>
-    <origin xyz="1 0 0"/><axis xyz="1 1 0"/><limit lower="-0.1" upper="0.2" effort="7" velocity="8"/>
-    <dynamics damping="0.3" friction="0.4"/></joint>
-</robot>)";
 
 TEST(UrdfPose, HomePoseIsForwardKinematicsAtZero) {
   const BodyModel m = import_text(kArm);
