@@ -100,13 +100,13 @@ Result<Body*> World::add_body(std::string name) {
 
 Result<Body*> World::add_body(const std::shared_ptr<const BodyModel>& model, std::string name,
                               const BuildOptions& options) {
-  const Result<Body*> body = add_body(std::move(name));
+  Result<Body*> body = add_body(std::move(name));
   if (body) (*body)->build(model, options);
   return body;
 }
 
 Result<Body*> World::copy_body(const Body& source, std::string name) {
-  const Result<Body*> body = add_body(std::move(name));
+  Result<Body*> body = add_body(std::move(name));
   if (body) (*body)->build_copy(source);
   return body;
 }
