@@ -116,6 +116,8 @@ class Desk {
 
   void play() {
     const bool step = inputs_ % kStepEvery == 0;
+    if (step) steady_ += 11'000'000'000;  // bundles that wait for their time are due
+    receiver_.release_due();              // first: what they hold must not come behind the good message
     const double gravity = -1 - static_cast<double>(inputs_ / kPlayEvery % 1024) / 64;  // exact as a float
     say({"/physics/sim/gravity", {Arg::of(0.0), Arg::of(0.0), Arg::of(gravity)}});
     say({"/physics/sim/paused", {Arg::of(true)}});
@@ -124,9 +126,7 @@ class Desk {
       say({"/physics/sim/substeps", {Arg::of(2.0)}});
       say({"/physics/sim/solver_iterations", {Arg::of(10.0)}});
       say({"/transport/step", {}});
-      steady_ += 11'000'000'000;  // bundles that wait for their time are due
     }
-    receiver_.release_due();
     count_waiting();
     const std::uint64_t tick = engine_.world().tick();
     engine_.tick();
