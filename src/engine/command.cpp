@@ -5,12 +5,6 @@
 
 namespace limber {
 
-namespace {
-
-constexpr std::size_t kErrorText = 1000;  // receivers take strings of 1024
-
-}  // namespace
-
 std::size_t weight_of(const Message& message) {
   std::size_t bytes = sizeof message + message.address.capacity() + message.args.capacity() * sizeof(Arg);
   for (const Arg& arg : message.args) {
@@ -29,7 +23,7 @@ std::size_t weight_of(const Command& command) {
 std::size_t weight_of(const Outgoing& out) { return sizeof out + weight_of(out.message); }
 
 Message error_message(std::string_view address, std::string_view text) {
-  return {"/error", {Arg::of(address), Arg::of(shortened(text, kErrorText))}};
+  return {"/error", {Arg::of(address), Arg::of(shortened(text, kMostFaultText))}};
 }
 
 }  // namespace limber

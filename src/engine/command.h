@@ -38,6 +38,8 @@ std::size_t weight_of(const Message& message);
 std::size_t weight_of(const Command& command);
 std::size_t weight_of(const Outgoing& out);
 
+/// Longest text of a fault that goes out, bytes: receivers take strings of 1024.
+inline constexpr std::size_t kMostFaultText = 1000;
 /// `/error <address> <text>`, the text short enough for every receiver. [any]
 Message error_message(std::string_view address, std::string_view text);
 

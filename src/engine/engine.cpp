@@ -300,7 +300,8 @@ void Engine::script_error(std::string_view file, int line, std::string_view text
   log_error("{}", text);
   push_out({Outgoing::To::event,
             {},
-            {"/script/error", {Arg::of(file), Arg::of(static_cast<double>(line)), Arg::of(shortened(text, 1000))}}});
+            {"/script/error",
+             {Arg::of(file), Arg::of(static_cast<double>(line)), Arg::of(shortened(text, kMostFaultText))}}});
 }
 
 }  // namespace limber

@@ -2,6 +2,7 @@
 #include "osc/names.h"
 
 #include <mutex>
+#include <system_error>
 #include <thread>
 #include <utility>
 
@@ -41,7 +42,7 @@ std::optional<Result<Endpoint>> HostNames::find(const std::string& host, std::ui
       return Endpoint{(*entry->second)->ip, port};
     }
   }
-  std::thread([host, port, look_up = look_up_, shared = shared_] {
+  const auto look = [host, port, look_up = look_up_, shared = shared_] {
     Result<Endpoint> at = look_up(host, port);
     {
       const std::scoped_lock lock(shared->mutex);
@@ -49,7 +50,13 @@ std::optional<Result<Endpoint>> HostNames::find(const std::string& host, std::ui
       shared->news = true;
     }
     shared->ring();
-  }).detach();
+  };
+  try {
+    std::thread(look).detach();
+  } catch (const std::system_error&) {
+    // no more threads: this once it is waited for
+    look();
+  }
   return std::nullopt;
 }
 

@@ -99,10 +99,11 @@ std::int32_t add_part(void* c, std::int32_t slot, std::int32_t generation, const
   Body* body = thing_of<Body>(context, id_of(slot, generation));
   Shape* shape = thing_of<Shape>(context, id_of(shape_slot, shape_generation));
   if (body == nullptr || shape == nullptr) return kGone;
-  // NaN: not said; the first part is where the body was put
-  Pose at = body->parts().empty() ? body->pose() : Pose{};
-  if (std::isfinite(pose[0])) at.position = {pose[0], pose[1], pose[2]};
-  if (std::isfinite(pose[3])) at.rotation = glm::normalize(quat_xyzw(pose[3], pose[4], pose[5], pose[6]));
+  // where nothing is said, the first part is where the body was put
+  const Pose usual = body->parts().empty() ? body->pose() : Pose{};
+  BuildOptions said;
+  place(said, pose);
+  const Pose at{said.position.value_or(usual.position), said.rotation.value_or(usual.rotation)};
   // a mass below zero: not said
   const double given = mass >= 0 ? mass : shape->model().kind == ShapeKind::plane ? 0 : 1;
   return made(context, body->add_part(std::string(text_of(name, length)), *shape, given, at));

@@ -217,8 +217,8 @@ void Body::build_copy(const Body& source) {
     part.set_start_pose(from->start_pose());
     copy_values(from->id(), part.id(), Part::table());
   }
-  *store().live_block(id_) = *store().live_block(source.id_);                 // enabled
-  *store().kept_block(id_) = *std::as_const(store()).kept_block(source.id_);  // self_collision
+  copy_values(source.id_, id_, table());
+  planned_ = source.planned_;
   store().apply_marks();
   // to the bit: what the store tells of a pose has gone through a quaternion
   for (std::size_t i = 0; i < parts_.size(); i++) parts_[i]->stand_like(*source.parts_[i]);
@@ -335,6 +335,7 @@ std::uint64_t Body::state_hash(std::uint64_t hash) const {
   const bool on = enabled();
   mix(&on, sizeof on);
   mix_kept(id_, table());
+  if (parts_.empty()) mix(&planned_, sizeof planned_);
   for (const auto& part : parts_) {
     const btTransform& t = part->rigid().getWorldTransform();
     for (int i = 0; i < 3; i++) mix(t.getBasis()[i].m_floats, 3 * sizeof(btScalar));

@@ -42,11 +42,6 @@ void put(double* to, const Vec3& v) {
   for (int i = 0; i < 3; i++) to[i] = v[i];
 }
 
-bool same_drive(const AxisSettings& a, const AxisSettings& b) {
-  return a.drive == b.drive && a.velocity == b.velocity && a.max_force == b.max_force && a.target == b.target &&
-         a.rest == b.rest && a.stiffness == b.stiffness && a.spring_damping == b.spring_damping;
-}
-
 Row axis_flags(std::string name, std::string doc) {
   return axes(effect<&Motor::effect_axes>(flags3(std::move(name), {false, false, false}, std::move(doc))));
 }
@@ -174,10 +169,10 @@ void Motor::set_target(double target) {
 void Motor::follow() {
   if (!joint_.spec().mimic) return;
   const Mimic& mimic = *joint_.spec().mimic;
-  const Joint* leader = joint_.body().find_joint(mimic.leader);
-  if (leader == nullptr) return;
-  set_target(mimic.multiplier * leader->value() + mimic.offset);
-  effect_axes();
+  if (leader_ == nullptr) leader_ = joint_.body().find_joint(mimic.leader);
+  if (leader_ == nullptr) return;
+  set_target(mimic.multiplier * leader_->value() + mimic.offset);
+  effect_goals();
 }
 
 void Motor::effect_axes() {
@@ -193,17 +188,15 @@ void Motor::effect_axes() {
     if (!joint_.is_open(axis)) continue;  // its drive comes when its limits open
     AxisSettings settings = constraint.axis(axis);
     settings.drive = static_cast<AxisDrive>(mode(axis));
-    settings.velocity = number(rows.velocity);
     settings.max_force = number(rows.max_force);
-    settings.target = number(rows.servo_position);
-    settings.rest = number(rows.rest);
     settings.stiffness = number(rows.stiffness);
     settings.spring_damping = number(rows.damping);
-    if (!same_drive(settings, constraint.axis(axis))) constraint.set_axis(axis, settings);
+    constraint.set_axis(axis, settings);
     if (settings.drive == AxisDrive::spring && number(rows.active) != 0) say_contradiction(axis);
   }
   constraint.set_bounce(store.values(id_, *rows.bounce)[0]);
   constraint.set_damping(store.values(id_, *rows.passive_damping)[0]);
+  effect_goals();
 }
 
 void Motor::effect_goals() {

@@ -58,6 +58,7 @@ class Motor {
 
   Joint& joint_;
   NodeId id_;
+  const Joint* leader_ = nullptr;  // of a follower, once it was looked for
   bool said_contradiction_ = false;
   bool said_cap_ = false;
 };
