@@ -27,6 +27,34 @@ std::int32_t matches(void*, const char* pattern, std::int32_t pattern_length, co
   return pattern_match(text_of(pattern, pattern_length), text_of(name, length)) ? 1 : 0;
 }
 
+const LimberMatch* match(void* c) { return reinterpret_cast<const LimberMatch*>(&context_of(c).match); }
+
+std::int32_t find_match(void* c, const char* text, std::int32_t length, const char* pattern,
+                        std::int32_t pattern_length, std::int32_t from, std::int32_t anchors) {
+  ScriptContext& context = context_of(c);
+  switch (context.search.find(text_of(text, length), text_of(pattern, pattern_length), static_cast<std::size_t>(from),
+                              anchors != 0, context.match)) {
+    case Found::yes:
+      return 1;
+    case Found::no:
+      return 0;
+    case Found::fault:
+      return context.refuse(context.search.fault());
+    case Found::too_long:
+      break;
+  }
+  return context.refuse(
+      "this pattern takes too many steps on this text; make it simpler (fewer * + - next to each other), or the text "
+      "shorter");
+}
+
+std::int32_t find_plain(void* c, const char* text, std::int32_t length, const char* wanted, std::int32_t wanted_length,
+                        std::int32_t from) {
+  const std::size_t at = context_of(c).search.find_plain(text_of(text, length), text_of(wanted, wanted_length),
+                                                         static_cast<std::size_t>(from));
+  return at == std::string_view::npos ? -1 : static_cast<std::int32_t>(at);
+}
+
 void print(void* c, const char* text, std::int32_t length) { context_of(c).host.print(text_of(text, length)); }
 
 void warn(void*, const char* text, std::int32_t length) { log_line(LogLevel::warning, text_of(text, length)); }

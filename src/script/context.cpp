@@ -3,7 +3,12 @@
 
 #include <fmt/format.h>
 
+#include "script/guard.h"
+
 namespace limber {
+
+ScriptContext::ScriptContext(World& w, ScriptHost& h, SceneOptions o)
+    : world(w), host(h), options(std::move(o)), search([this] { return guard->stop_asked(); }) {}
 
 std::int32_t ScriptContext::say(std::string what) {
   text = std::move(what);

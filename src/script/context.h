@@ -14,6 +14,7 @@
 #include "script/c_api.h"
 #include "script/files.h"
 #include "script/host.h"
+#include "script/match.h"
 #include "script/params_node.h"
 #include "script/scene_options.h"
 #include "sim/world.h"
@@ -23,7 +24,7 @@ namespace limber {
 class Guard;
 
 struct ScriptContext {
-  ScriptContext(World& w, ScriptHost& h, SceneOptions o) : world(w), host(h), options(std::move(o)) {}
+  ScriptContext(World& w, ScriptHost& h, SceneOptions o);
 
   World& world;
   ScriptHost& host;
@@ -33,6 +34,8 @@ struct ScriptContext {
   LimberAnswer answer{};
   std::string text;  ///< What `answer.text` points to.
   LimberRow row{};
+  MatchSearch search;  ///< Ends early when the call is to be stopped.
+  Match match;
 
   // generator of the scene's file: of the seed and the file's name, anew when the top level changes the seed
   std::string random_name;

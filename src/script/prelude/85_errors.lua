@@ -67,12 +67,15 @@ local function traceback(level)
   return lines
 end
 
+-- what is shown is read by people, and handled where no script can be stopped
+local function shortened(text, most) return #text > most and sub(text, 1, most) .. "…" or text end
+
 local function fault_of(file, line, message, trace)
   local text = message
   if file then
     text = format("%s:%d: %s", file, line, message)
     local source = source_line(file, line)
-    if source then text = format("%s\n  %d | %s", text, line, source) end
+    if source then text = format("%s\n  %d | %s", text, line, shortened(source, 200)) end
   end
   if #trace > 0 then text = text .. "\nstack traceback:\n" .. table.concat(trace, "\n") end
   return { file = file or P.main or "", line = line or 0, text = text }
@@ -84,7 +87,7 @@ function P.handler(thrown)
   if type(thrown) ~= "string" then
     thrown = type(thrown) == "number" and tostring(thrown) or format("an error that is no text but a %s", type(thrown))
   end
-  local file, line, message = place_in(thrown)
+  local file, line, message = place_in(shortened(thrown, 4000))
   if not file then file, line = P.where(3) end
   return fault_of(file, line, explain(message), traceback(3))
 end
