@@ -4,6 +4,7 @@
 #include <cstddef>
 
 #include "params/store.h"
+#include "script/match.h"
 
 namespace limber {
 
@@ -12,6 +13,10 @@ static_assert(offsetof(LimberSlot, generation) == offsetof(NodeSlot, generation)
 static_assert(offsetof(LimberSlot, table) == offsetof(NodeSlot, table));
 static_assert(offsetof(LimberSlot, kept) == offsetof(NodeSlot, kept));
 static_assert(offsetof(LimberSlot, live) == offsetof(NodeSlot, live));
+static_assert(sizeof(LimberMatch) == sizeof(Match));
+static_assert(offsetof(LimberMatch, count) == offsetof(Match, count));
+static_assert(offsetof(LimberMatch, from) == offsetof(Match, from));
+static_assert(offsetof(LimberMatch, length) == offsetof(Match, length));
 static_assert(sizeof(LimberView) == sizeof(StoreView));
 static_assert(offsetof(LimberView, slots) == offsetof(StoreView, slots));
 static_assert(offsetof(LimberView, kept) == offsetof(StoreView, kept));

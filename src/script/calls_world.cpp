@@ -8,6 +8,7 @@
 #include "base/text.h"
 #include "params/units.h"
 #include "script/context.h"
+#include "script/guard.h"
 #include "script/noise.h"
 
 namespace limber::calls {
@@ -26,13 +27,55 @@ std::int32_t matches(void*, const char* pattern, std::int32_t pattern_length, co
   return pattern_match(text_of(pattern, pattern_length), text_of(name, length)) ? 1 : 0;
 }
 
+const LimberMatch* match(void* c) { return reinterpret_cast<const LimberMatch*>(&context_of(c).match); }
+
+std::int32_t find_match(void* c, const char* text, std::int32_t length, const char* pattern,
+                        std::int32_t pattern_length, std::int32_t from, std::int32_t anchors) {
+  ScriptContext& context = context_of(c);
+  switch (context.search.find(text_of(text, length), text_of(pattern, pattern_length), static_cast<std::size_t>(from),
+                              anchors != 0, context.match)) {
+    case Found::yes:
+      return 1;
+    case Found::no:
+      return 0;
+    case Found::fault:
+      return context.refuse(context.search.fault());
+    case Found::too_long:
+      break;
+  }
+  return context.refuse(
+      "this pattern takes too many steps on this text; make it simpler (fewer * + - next to each other), or the text "
+      "shorter");
+}
+
+std::int32_t find_plain(void* c, const char* text, std::int32_t length, const char* wanted, std::int32_t wanted_length,
+                        std::int32_t from) {
+  const std::size_t at = context_of(c).search.find_plain(text_of(text, length), text_of(wanted, wanted_length),
+                                                         static_cast<std::size_t>(from));
+  return at == std::string_view::npos ? -1 : static_cast<std::int32_t>(at);
+}
+
 void print(void* c, const char* text, std::int32_t length) { context_of(c).host.print(text_of(text, length)); }
 
 void warn(void*, const char* text, std::int32_t length) { log_line(LogLevel::warning, text_of(text, length)); }
 
-void script_error(void* c, const char* file, std::int32_t file_length, std::int32_t line, const char* text,
-                  std::int32_t length) {
-  context_of(c).host.script_error(text_of(file, file_length), line, text_of(text, length));
+void report(void* c) {
+  ScriptContext& context = context_of(c);
+  const ScriptFault& fault = context.guard->fault();
+  context.host.script_error(fault.file, fault.line, fault.text);
+}
+
+std::int32_t stopped(void* c) {
+  ScriptContext& context = context_of(c);
+  if (!context.guard->stopped()) return 0;
+  context.say(std::string(context.guard->stop_file()));
+  context.answer.number[0] = context.guard->stop_line();
+  return 1;
+}
+
+std::int32_t stop_text(void* c) {
+  ScriptContext& context = context_of(c);
+  return context.say(context.guard->stop_text());
 }
 
 std::int32_t read_lib(void* c, const char* name, std::int32_t length) {
@@ -74,7 +117,7 @@ std::int32_t contact(void* c, std::int32_t index) {
   return kOk;
 }
 
-void ask_reset(void* c) { context_of(c).host.ask_reset(); }
+void ask_reset(void* c) { context_of(c).reset_wanted = true; }
 
 std::int32_t param_row(void* c, const char* name, std::int32_t length, std::int32_t type, const double* initial,
                        const double* low, const double* high) {

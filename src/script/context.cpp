@@ -3,7 +3,12 @@
 
 #include <fmt/format.h>
 
+#include "script/guard.h"
+
 namespace limber {
+
+ScriptContext::ScriptContext(World& w, ScriptHost& h, SceneOptions o)
+    : world(w), host(h), options(std::move(o)), search([this] { return guard->stop_asked(); }) {}
 
 std::int32_t ScriptContext::say(std::string what) {
   text = std::move(what);
@@ -35,6 +40,35 @@ std::uint64_t ScriptContext::hash(std::uint64_t start) {
   if (params == nullptr) return start;
   const double* kept = std::as_const(world.store()).kept_block(params->id());
   return hash_bytes({reinterpret_cast<const char*>(kept), params->table().kept_width() * sizeof(double)}, start);
+}
+
+void ScriptContext::begin_call() {
+  answer.call++;
+  random_before_ = random;
+  seeded_before_ = seeded_with;
+  reset_wanted = false;
+  world.undo().begin();
+}
+
+void ScriptContext::end_call(bool good) {
+  if (good) {
+    world.undo().end();
+    for (Held& h : held) {
+      if (h.way == Way::all) {
+        host.send(std::move(h.message));
+      } else if (h.way == Way::sender) {
+        host.reply(h.to, std::move(h.message));
+      } else {
+        host.send_direct(h.to, std::move(h.message));
+      }
+    }
+    if (reset_wanted) host.ask_reset();
+  } else {
+    world.undo().take_back();
+    random = random_before_;
+    seeded_with = seeded_before_;
+  }
+  held.clear();
 }
 
 std::string label_of(const ScriptContext& c, NodeId id) {

@@ -14,14 +14,17 @@
 #include "script/c_api.h"
 #include "script/files.h"
 #include "script/host.h"
+#include "script/match.h"
 #include "script/params_node.h"
 #include "script/scene_options.h"
 #include "sim/world.h"
 
 namespace limber {
 
+class Guard;
+
 struct ScriptContext {
-  ScriptContext(World& w, ScriptHost& h, SceneOptions o) : world(w), host(h), options(std::move(o)) {}
+  ScriptContext(World& w, ScriptHost& h, SceneOptions o);
 
   World& world;
   ScriptHost& host;
@@ -31,6 +34,8 @@ struct ScriptContext {
   LimberAnswer answer{};
   std::string text;  ///< What `answer.text` points to.
   LimberRow row{};
+  MatchSearch search;  ///< Ends early when the call is to be stopped.
+  Match match;
 
   // generator of the scene's file: of the seed and the file's name, anew when the top level changes the seed
   std::string random_name;
@@ -54,6 +59,21 @@ struct ScriptContext {
   std::int32_t handlers = 0;  ///< Registered by osc:on.
   std::unique_ptr<ParamsNode> params;
 
+  // guarded calls: what one asks of the outside waits until it has ended well
+  Guard* guard = nullptr;  ///< Of the scene's Vm.
+  enum class Way : std::uint8_t { all, sender, direct };
+  struct Held {
+    Way way;
+    Origin to;
+    Message message;
+  };
+  std::vector<Held> held;
+  bool reset_wanted = false;
+  /// From here on everything that a script does is kept for the undo.
+  void begin_call();
+  /// A good one's messages go out; a bad one is taken back, its random draws too.
+  void end_call(bool good);
+
   // answers
   std::int32_t say(std::string what);
   std::int32_t refuse(std::string why) {
@@ -62,6 +82,10 @@ struct ScriptContext {
   }
   std::int32_t tell(NodeId id);
   bool alive(NodeId id) const { return world.store().alive(id); }
+
+ private:
+  Random random_before_;
+  std::optional<std::uint64_t> seeded_before_;
 };
 
 inline ScriptContext& context_of(void* c) { return *static_cast<ScriptContext*>(c); }

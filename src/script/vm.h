@@ -2,11 +2,14 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <string>
 #include <string_view>
 
 #include "base/message.h"
 #include "base/result.h"
+#include "script/collector.h"
+#include "script/guard.h"
 
 struct lua_State;
 
@@ -16,8 +19,9 @@ struct ScriptContext;
 
 class Vm {
  public:
-  /// The context is what the prelude's calls work on; it outlives the Vm. [sim]
-  explicit Vm(ScriptContext& context);
+  /// The context is what the prelude's calls work on; it outlives the Vm. Live when that is wanted and no other Vm of
+  /// the process is. [sim]
+  Vm(ScriptContext& context, VmMode wanted);
   ~Vm();
   Vm(const Vm&) = delete;
   Vm& operator=(const Vm&) = delete;
@@ -32,6 +36,13 @@ class Vm {
   bool message(const Message& message, const Origin& origin);
   /// Every name that a scene sees, one a line: globals, library.member, thing.member, thing:method. [sim]
   std::string names();
+  /// Calls of scripts' code, from C++ too: the state's main thread is `state()`. [sim]
+  Guard& guard() { return guard_; }
+  lua_State* state() const { return state_.get(); }
+  VmMode mode() const { return guard_.mode(); }
+  /// Draft to live, once the other Vm has gone or was disarmed; false while it has not.
+  bool arm() { return guard_.arm(); }
+  void disarm() { guard_.disarm(); }
   /// Collects for about 100 µs when there is enough to collect. The collector rests at all other times. [sim]
   void collect_garbage();
 
@@ -44,13 +55,13 @@ class Vm {
     void operator()(lua_State* state) const;
   };
   std::unique_ptr<lua_State, Close> state_;
-  int run_ = -1;  // registry references of the prelude's entries
+  Guard guard_;
+  std::optional<Collector> collector_;  // once the prelude is in
+  int run_ = -1;                        // registry references of the prelude's entries
   int start_ = -1;
   int tick_ = -1;
   int message_ = -1;
   int names_ = -1;
-  double used_after_cycle_ = 0;  // kB
-  bool collecting_ = false;
 };
 
 }  // namespace limber
