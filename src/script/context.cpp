@@ -5,6 +5,14 @@
 
 namespace limber {
 
+ScriptContext::ScriptContext(World& w, ScriptHost& h, SceneOptions o) : world(&w), host(h), options(std::move(o)) {
+  world->store().show_view(view);
+}
+
+ScriptContext::~ScriptContext() {
+  if (world != nullptr) world->store().hide_view(view);
+}
+
 std::int32_t ScriptContext::say(std::string what) {
   text = std::move(what);
   answer.text = text.data();
@@ -21,10 +29,10 @@ std::int32_t ScriptContext::tell(NodeId id) {
 
 Random& ScriptContext::generator() {
   // a seed that comes later counts from the next start
-  const bool anew = !seeded_with || (answer.top_level != 0 && *seeded_with != world.seed());
+  const bool anew = !seeded_with || (answer.top_level != 0 && *seeded_with != world->seed());
   if (anew) {
-    seeded_with = world.seed();
-    random = Random(world.seed(), random_name);
+    seeded_with = world->seed();
+    random = Random(world->seed(), random_name);
   }
   return random;
 }
@@ -33,12 +41,12 @@ std::uint64_t ScriptContext::hash(std::uint64_t start) {
   const auto& words = generator().state();
   start = hash_bytes({reinterpret_cast<const char*>(words.data()), sizeof words}, start);
   if (params == nullptr) return start;
-  const double* kept = std::as_const(world.store()).kept_block(params->id());
+  const double* kept = std::as_const(world->store()).kept_block(params->id());
   return hash_bytes({reinterpret_cast<const char*>(kept), params->table().kept_width() * sizeof(double)}, start);
 }
 
 std::string label_of(const ScriptContext& c, NodeId id) {
-  const Store& store = c.world.store();
+  const Store& store = c.world->store();
   if (!store.alive(id)) return "a thing that no longer exists";
   const Table* const table = &store.table(id);
   if (table == &World::table()) return "sim";

@@ -10,6 +10,7 @@
 #include "base/log.h"
 #include "script/context.h"
 #include "script/prelude.h"
+#include "script/scene.h"
 
 namespace limber {
 
@@ -67,7 +68,7 @@ void Vm::load_prelude(ScriptContext& context) {
   lua_setfield(L, -2, "api");
   lua_pushlightuserdata(L, &context);
   lua_setfield(L, -2, "context");
-  const NodeId world = context.world.id();
+  const NodeId world = context.world->id();
   lua_pushnumber(L, world.slot);
   lua_setfield(L, -2, "world_slot");
   lua_pushnumber(L, world.generation);
@@ -100,6 +101,8 @@ void Vm::keep_entries() {
     tick_ = keep("tick");
     message_ = keep("message");
     names_ = keep("names");
+    lua_pushvalue(L, -1);
+    entries_ = luaL_ref(L, LUA_REGISTRYINDEX);
   }
   lua_settop(L, 0);
 }
@@ -115,17 +118,18 @@ bool Vm::call(int arguments, int results) {
   return false;
 }
 
-Result<void> Vm::run(std::string_view text, std::string_view name) {
+Result<void> Vm::run(std::string_view text, std::string_view name, ScriptPlace& fault) {
   lua_State* const L = state_.get();
   lua_gc(L, LUA_GCRESTART, 0);
   lua_rawgeti(L, LUA_REGISTRYINDEX, run_);
   push(L, text);
   push(L, name);
   Result<void> result;
-  if (!call(2, 1)) {
+  if (!call(2, 3)) {
     result = Error{fmt::format("{}: the scene could not be run", name)};
-  } else if (!lua_isnil(L, -1)) {
-    result = Error{std::string(text_at(L, -1))};
+  } else if (!lua_isnil(L, -3)) {
+    result = Error{std::string(text_at(L, -3))};
+    fault = {std::string(text_at(L, -2)), static_cast<int>(lua_tointeger(L, -1))};
   }
   lua_settop(L, 0);
   lua_gc(L, LUA_GCSTOP, 0);

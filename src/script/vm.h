@@ -2,6 +2,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <string>
 #include <string_view>
 
@@ -13,6 +14,7 @@ struct lua_State;
 namespace limber {
 
 struct ScriptContext;
+struct ScriptPlace;
 
 class Vm {
  public:
@@ -22,8 +24,9 @@ class Vm {
   Vm(const Vm&) = delete;
   Vm& operator=(const Vm&) = delete;
 
-  /// Runs a scene's text in a fresh environment. The error: file:line: what, the source line, the traceback. [sim]
-  Result<void> run(std::string_view text, std::string_view name);
+  /// Runs a scene's text in a fresh environment. The error: file:line: what, the source line, the traceback; `fault`:
+  /// its place. [sim]
+  Result<void> run(std::string_view text, std::string_view name, ScriptPlace& fault);
   /// The callbacks of on_start. Those that err are told to the host. [sim]
   void start();
   /// Timers, contacts, on_step. Allocates nothing here; what scripts make is Lua's. [sim]
@@ -32,6 +35,18 @@ class Vm {
   bool message(const Message& message, const Origin& origin);
   /// Every name that a scene sees, one a line: globals, library.member, thing.member, thing:method. [sim]
   std::string names();
+
+  /// `state` as plain data: text of its own, equal where the data are. [sim]
+  std::string state();
+  /// Before a run beside the show: `state` starts as that text; nothing is compiled until become_live().
+  void begin_beside(std::string_view state);
+  /// After the run: which keys of `state` it wrote; every handle is told to the context (ScriptContext::things).
+  void prepare();
+  /// `state` of the show that this run takes the place of; keys that the run wrote itself stay. [sim]
+  void take_state(std::string_view state);
+  /// Handles have other ids now; timers go on from where they were looked at last, if they were. [sim]
+  void become_live(std::optional<double> timers_at);
+
   /// Collects for about 100 µs when there is enough to collect. The collector rests at all other times. [sim]
   void collect_garbage();
 
@@ -39,6 +54,7 @@ class Vm {
   void load_prelude(ScriptContext& context);
   void keep_entries();
   bool call(int arguments, int results);
+  void push_entry(const char* name);
 
   struct Close {
     void operator()(lua_State* state) const;
@@ -49,6 +65,7 @@ class Vm {
   int tick_ = -1;
   int message_ = -1;
   int names_ = -1;
+  int entries_ = -1;             // the table that these are of
   double used_after_cycle_ = 0;  // kB
   bool collecting_ = false;
 };

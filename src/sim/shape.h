@@ -29,6 +29,9 @@ class Shape {
   Result<void> add_child(const Shape& child, const Pose& origin);
   /// The shape's geometries in its own frame: itself, or a compound's children.
   std::vector<PlacedShape> placed() const;
+  const std::vector<PlacedShape>& children() const { return children_; }
+  /// Takes the geometry of another shape, of another world perhaps. Parts made before are not changed.
+  void become(const Shape& other);
   /// As a part of that shape collides, mass spread over its volume. Built at first use.
   std::shared_ptr<const Geometry> geometry() const;
 

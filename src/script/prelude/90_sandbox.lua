@@ -223,7 +223,7 @@ function P.make_env()
   add_functions(env)
   env.require = make_require(env)
   env.vec3, env.quat, env.rgb, env.rng = P.vec3, P.make_quat(), P.rgb, P.rng
-  env.sim, env.osc, env.params, env.state = P.sim, P.osc, P.params, {}
+  env.sim, env.osc, env.params, env.state = P.sim, P.osc, P.params, P.first_state()
   return setmetatable(env, {
     __index = function(_, key)
       local hint = P.hint(key, P.sorted_keys(env))
@@ -236,7 +236,8 @@ end
 -- runs a scene's file; the fault's text, file and line when it fails
 function P.entry.run(text, name)
   P.sources[name], P.main = text, name
-  local chunk, message = native.load(text, "@" .. name, "t", P.make_env())
+  P.env = P.make_env()
+  local chunk, message = native.load(text, "@" .. name, "t", P.env)
   local fault
   if chunk then
     local ok, caught = xpcall(chunk, P.handler)
