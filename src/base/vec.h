@@ -59,4 +59,15 @@ struct Pose {
   }
 };
 
+/// The same but for rounding: what one formula gives on two ways. A nanometre, a nanoradian.
+inline bool nearly_same(const Vec3& a, const Vec3& b) { return glm::length(a - b) <= 1e-9 * (1 + glm::length(a)); }
+inline bool nearly_same(const Quat& a, const Quat& b) {
+  const double sign = glm::dot(a, b) < 0 ? -1 : 1;
+  const Quat d = a - sign * b;
+  return glm::dot(d, d) <= 1e-18;
+}
+inline bool nearly_same(const Pose& a, const Pose& b) {
+  return nearly_same(a.position, b.position) && nearly_same(a.rotation, b.rotation);
+}
+
 }  // namespace limber

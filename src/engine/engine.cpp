@@ -35,7 +35,10 @@ class Stopwatch {
 }  // namespace
 
 Engine::Engine(EngineLink& link, EngineOptions options)
-    : link_(link), options_(std::move(options)), stage_(std::make_unique<Stage>(link)) {
+    : link_(link),
+      options_(std::move(options)),
+      stage_(std::make_unique<Stage>(link)),
+      reload_(options_.scene, *this, hand_) {
   link_.wake_engine = [this] { commands_wait_.store(true, std::memory_order_relaxed); };
 }
 
@@ -44,7 +47,12 @@ Engine::~Engine() {
 }
 
 Result<void> Engine::start() {
-  if (Result<void> ran = stage_->run(options_.scene, *this, options_.scene_options); !ran) return ran;
+  if (Result<void> ran = stage_->run(options_.scene, *this, options_.scene_options); !ran) {
+    stage_ = std::make_unique<Stage>(link_);
+    reload_.begin(*stage_, options_.scene_options);
+    return ran;
+  }
+  reload_.begin(*stage_, options_.scene_options);
   World& world = stage_->world;
   if (options_.scene_options.seed) {
     const auto seed = static_cast<double>(*options_.scene_options.seed);
@@ -63,10 +71,16 @@ Result<void> Engine::start() {
     if (outcome.clamped != nullptr) say_clamped(message, *outcome.clamped);
     hand_.remember(message);
   }
-  world.settle();
-  if (stage_->scene != nullptr) stage_->scene->start();
+  begin_show();
   publish();
   return {};
+}
+
+// what the hand has set may want another run before the scene's on_start sees it
+void Engine::begin_show() {
+  if (reload_.take_rerun(*stage_)) reload_now(true);
+  stage_->world.settle();
+  if (stage_->scene != nullptr) stage_->scene->start();
 }
 
 void Engine::reset() {
@@ -80,6 +94,7 @@ void Engine::reset() {
     log_error("reset: the scene plays on as it was, its file has an error: {}", ran.error());
     return;
   }
+  reload_.begin(*fresh, scene_options);
   for (const char* state : {"seed", "paused", "speed"}) {
     const Row& row = World::table().at(state);
     if (row.name == "seed" && !scene_options.seed) continue;
@@ -88,14 +103,40 @@ void Engine::reset() {
   faults_ += before.health_events();
   stage_ = std::move(fresh);
   if (stage_->scene != nullptr) stage_->scene->arm();  // while both were there, the new one ran interpreted
-  // what the performer set and the scene still has
-  for (const Message* message : hand_.in_order()) (void)stage_->dispatch.execute(*message);
-  stage_->world.settle();
-  if (stage_->scene != nullptr) stage_->scene->start();
+  replay_hand();
+  begin_show();
   send_transport();
 }
 
+// what the performer set and the scene still has; but what a reload has given back since is as the scene says
+void Engine::replay_hand() {
+  struct Value {
+    Place place;
+    std::array<double, 4> values{};
+  };
+  const std::vector<HandStep> steps = hand_.in_order();
+  Store& store = stage_->store;
+  std::vector<Value> scenes;
+  for (const HandStep& step : steps) {
+    if (step.address == nullptr) continue;
+    const Result<Place> place = find_place(store, *step.address);
+    scenes.push_back({place ? *place : Place{}, {}});
+    if (place && place->row != nullptr) store.get(place->node, *place->row, scenes.back().values.data());
+  }
+  auto next = scenes.begin();
+  for (const HandStep& step : steps) {
+    if (step.message != nullptr) {
+      (void)stage_->dispatch.execute(*step.message);
+      continue;
+    }
+    const Value& value = *next++;
+    if (value.place.row != nullptr)
+      (void)store.set(value.place.node, *value.place.row, {value.values.data(), value.place.row->width});
+  }
+}
+
 void Engine::run() {
+  requests_.open();
   clock_.restart(Clock::Time::clock::now());
   while (!stop_.load(std::memory_order_relaxed) && !finished()) {
     if (options_.fast && !stage_->transport.paused()) {
@@ -108,6 +149,7 @@ void Engine::run() {
       pass(false);
     }
   }
+  requests_.close();
 }
 
 // false: the tick is not due yet, but somebody may wait for an answer
@@ -115,8 +157,9 @@ bool Engine::wait_for_tick() {
   const auto due = clock_.due();
   const auto until = std::min(due, Clock::Time::clock::now() + kLongestWait);
   std::unique_lock lock(wake_mutex_);
-  wake_.wait_until(lock, until, [this] { return stop_.load(std::memory_order_relaxed); });
-  return until == due && !stop_.load(std::memory_order_relaxed);
+  const bool called =
+      wake_.wait_until(lock, until, [this] { return stop_.load(std::memory_order_relaxed) || requests_.waiting(); });
+  return until == due && !called;
 }
 
 void Engine::pace() {
@@ -148,6 +191,8 @@ void Engine::stop() {
 
 void Engine::pass(bool may_step) {
   Stopwatch watch;
+  requests_.serve();
+  rerun();
   drain();
   times_.commands = watch.lap();
 
@@ -298,6 +343,7 @@ void Engine::script_error(std::string_view file, int line, std::string_view text
     return;
   }
   faults_++;
+  reload_.faulty(file);
   log_error("{}", text);
   push_out({Outgoing::To::event,
             {},

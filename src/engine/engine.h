@@ -4,6 +4,7 @@
 
 #include <atomic>
 #include <condition_variable>
+#include <functional>
 #include <memory>
 #include <mutex>
 #include <optional>
@@ -13,6 +14,8 @@
 #include "engine/clock.h"
 #include "engine/hand.h"
 #include "engine/link.h"
+#include "engine/reload.h"
+#include "engine/requests.h"
 #include "engine/stage.h"
 
 namespace limber {
@@ -48,7 +51,8 @@ class Engine : private ScriptHost {
   Engine(const Engine&) = delete;
   Engine& operator=(const Engine&) = delete;
 
-  /// Runs the scene's file and the `sets`: what is wrong with either, with file and line. [sim]
+  /// Runs the scene's file and the `sets`: what is wrong with either, with file and line. After a scene's fault the
+  /// world is empty and waits: the first good reload is then the start. [sim]
   Result<void> start();
   /// Ticks until the end that the options name, or stop(). [sim]
   void run();
@@ -56,6 +60,15 @@ class Engine : private ScriptHost {
   void tick() { pass(true); }
   /// Ends run() soon. [any]
   void stop();
+
+  /// Runs the scene beside the show and has what it says otherwise than the last good run applied between two ticks; a
+  /// fault is told, and the show plays on as it is. Waits until that is done. `again`: a run of what the last good one
+  /// has read, because a parameter has changed, not the disk. [any but sim, while run() goes]
+  void reload(bool again = false);
+  /// The same at once, on the simulation's own thread. [sim]
+  Reload::End reload_now(bool again = false);
+  /// Files that are worth a reload when they change. [any]
+  std::vector<SourceFile> files() const { return reload_.files(); }
 
   World& world() { return stage_->world; }
   Store& store() { return stage_->store; }
@@ -77,6 +90,11 @@ class Engine : private ScriptHost {
   /// A tick; or, when `may_step` is false, only what happens while time stands still.
   void pass(bool may_step);
   void reset();
+  void replay_hand();
+  Reload::End take(Draft& draft);
+  void begin_show();
+  void rerun();
+  bool between_ticks(const std::function<void()>& work);
   void drain();
   void execute(Message& message, const Origin& origin);
   void refuse(std::string_view address, const Origin& origin, std::string_view error);
@@ -95,6 +113,8 @@ class Engine : private ScriptHost {
   std::unique_ptr<Stage> stage_;
   std::uint64_t scene_seed_ = 0;  // as the scene's run left it
   PerformerHand hand_;
+  Reload reload_;
+  Requests requests_;
   Clock clock_;
   PhaseTimes times_;
 

@@ -25,15 +25,22 @@ void PerformerHand::remember(const Message& message) {
   known->second.order = ++order_;
 }
 
-std::vector<const Message*> PerformerHand::in_order() const {
-  std::vector<const Value*> values;
-  values.reserve(values_.size());
-  for (const auto& [key, value] : values_) values.push_back(&value);
-  std::sort(values.begin(), values.end(), [](const Value* a, const Value* b) { return a->order < b->order; });
-  std::vector<const Message*> messages;
-  messages.reserve(values.size());
-  for (const Value* value : values) messages.push_back(&value->message);
-  return messages;
+void PerformerHand::give_back(const std::string& address) {
+  if (values_.empty()) return;
+  if (returned_.size() >= kMostValues && !returned_.contains(address)) return;
+  returned_[address] = ++order_;
+}
+
+std::vector<HandStep> PerformerHand::in_order() const {
+  std::vector<std::pair<std::uint64_t, HandStep>> steps;
+  steps.reserve(values_.size() + returned_.size());
+  for (const auto& [key, value] : values_) steps.push_back({value.order, {&value.message, nullptr}});
+  for (const auto& [address, order] : returned_) steps.push_back({order, {nullptr, &address}});
+  std::sort(steps.begin(), steps.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
+  std::vector<HandStep> list;
+  list.reserve(steps.size());
+  for (const auto& [order, step] : steps) list.push_back(step);
+  return list;
 }
 
 }  // namespace limber

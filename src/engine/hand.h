@@ -11,13 +11,21 @@
 
 namespace limber {
 
+/// One of two: a message that was sent, or the address of a value that is the scene's again.
+struct HandStep {
+  const Message* message = nullptr;
+  const std::string* address = nullptr;
+};
+
 class PerformerHand {
  public:
   /// The message set a property. It replaces an earlier one of the same address and names, and counts as the newest.
   /// Allocates nothing for one that is known.
   void remember(const Message& message);
-  /// All of them, the oldest first: sent again in this order they leave what the performer left.
-  std::vector<const Message*> in_order() const;
+  /// A reload gave this value what the scene says: nothing that was sent before counts for it any more.
+  void give_back(const std::string& address);
+  /// All of them, the oldest first: done again in this order they leave what the performer left.
+  std::vector<HandStep> in_order() const;
   std::size_t size() const { return values_.size(); }
 
  private:
@@ -25,8 +33,9 @@ class PerformerHand {
     Message message;
     std::uint64_t order = 0;
   };
-  std::unordered_map<std::string, Value> values_;  // by address and names
-  std::string key_;                                // scratch
+  std::unordered_map<std::string, Value> values_;            // by address and names
+  std::unordered_map<std::string, std::uint64_t> returned_;  // order of the reload, by address
+  std::string key_;                                          // scratch
   std::uint64_t order_ = 0;
 };
 

@@ -23,6 +23,9 @@ struct EngineLink {
 
   /// Called after something was put into `outbox` or `osc_plan` (an eventfd of the network's, say). Set before start.
   std::function<void()> wake_network = [] {};
+  /// Called when a parameter with `rerun` has changed: somebody calls Engine::reload(true), on a thread of his own.
+  /// Null: the simulation runs the scene itself. Set before start.
+  std::function<void()> rerun_scene;
   /// Called after something was put into `inbox`, so that a paused engine need not poll. Set by the engine.
   std::function<void()> wake_engine = [] {};
 };

@@ -2,6 +2,7 @@
 #include "model/mesh_library.h"
 
 #include <algorithm>
+#include <filesystem>
 #include <string_view>
 #include <system_error>
 
@@ -98,29 +99,20 @@ Result<std::string> find_mesh(const std::string& uri, const std::string& folder,
                   printable(uri), looked)};
 }
 
-FileStamp stamp_of(const std::string& path) {
-  std::error_code fault;
-  FileStamp stamp;
-  stamp.size = fs::file_size(path, fault);
-  if (fault) return {};
-  stamp.time = fs::last_write_time(path, fault);
-  return fault ? FileStamp{} : stamp;
-}
-
 Result<std::shared_ptr<const MeshModel>> MeshLibrary::load(const std::string& path, const Vec3& scale) {
   const std::string key = fmt::format("{}|{:a}|{:a}|{:a}", path, scale.x, scale.y, scale.z);
-  const FileStamp stamp = stamp_of(path);
   {
     const std::lock_guard lock(mutex_);
     const auto found = meshes_.find(key);
-    if (found != meshes_.end() && found->second.stamp == stamp) return found->second.mesh;
+    if (found != meshes_.end() && found->second.stamp.holds(path)) return found->second.mesh;
   }
   // loaded without the lock: two threads may do it twice, and the first one's is kept
+  const FileStamp stamp(path);
   auto mesh = load_mesh(path, scale);
   if (!mesh) return mesh;
   const std::lock_guard lock(mutex_);
   Entry& entry = meshes_[key];
-  if (!entry.mesh || entry.stamp != stamp) entry = {stamp, *mesh};
+  if (!entry.mesh || !(entry.stamp == stamp)) entry = {stamp, *mesh};
   return entry.mesh;
 }
 

@@ -1,8 +1,6 @@
 // Finds mesh files by the URIs that URDF files use, and keeps what was loaded: one file and scale, one shared mesh.
 #pragma once
 
-#include <cstdint>
-#include <filesystem>
 #include <map>
 #include <memory>
 #include <mutex>
@@ -11,6 +9,7 @@
 
 #include "base/result.h"
 #include "model/body_model.h"
+#include "model/file_stamp.h"
 
 namespace limber {
 
@@ -19,16 +18,6 @@ namespace limber {
 /// The error says where it looked. Nothing is fetched from a network. [any]
 Result<std::string> find_mesh(const std::string& uri, const std::string& folder,
                               const std::vector<std::string>& package_paths);
-
-/// Size and time of a file: whether it is still the one that was read.
-struct FileStamp {
-  std::uintmax_t size = 0;
-  std::filesystem::file_time_type time{};
-
-  bool operator==(const FileStamp&) const = default;
-};
-/// Zero for a file that can't be asked. [any]
-FileStamp stamp_of(const std::string& path);
 
 /// Loaded meshes by file and scale. Never more than one of each is kept; a changed file is loaded anew. [any]
 class MeshLibrary {

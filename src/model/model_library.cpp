@@ -8,10 +8,7 @@
 
 namespace limber {
 
-namespace {
-
-/// Everything that makes two imports the same, in one text.
-std::string key_of(const std::string& path, const ImportOptions& options) {
+std::string model_key(const std::string& path, const ImportOptions& options) {
   std::error_code fault;
   const std::filesystem::path whole = std::filesystem::weakly_canonical(path, fault);
   std::string key = fault ? path : whole.string();
@@ -21,18 +18,16 @@ std::string key_of(const std::string& path, const ImportOptions& options) {
   return key;
 }
 
-}  // namespace
-
-bool ModelLibrary::is_fresh(const Entry& entry) {
+bool ModelLibrary::is_fresh(Entry& entry) {
   for (std::size_t i = 0; i < entry.stamps.size(); ++i) {
-    if (!(stamp_of(entry.model->files[i]) == entry.stamps[i])) return false;
+    if (!entry.stamps[i].holds(entry.model->files[i])) return false;
   }
   return true;
 }
 
 Result<std::shared_ptr<const BodyModel>> ModelLibrary::load_urdf(const std::string& path,
                                                                  const ImportOptions& options) {
-  const std::string key = key_of(path, options);
+  const std::string key = model_key(path, options);
   {
     const std::lock_guard lock(mutex_);
     const auto found = models_.find(key);
@@ -40,11 +35,11 @@ Result<std::shared_ptr<const BodyModel>> ModelLibrary::load_urdf(const std::stri
   }
   // imported without the lock, which other threads may need meanwhile; the URDF's stamp is taken first, so that a
   // change during the import is seen the next time
-  const FileStamp before = stamp_of(path);
+  const FileStamp before(path);
   Result<std::shared_ptr<const BodyModel>> model = import_urdf(path, options, meshes_);
   if (!model) return model;
   Entry entry{*model, {}};
-  for (const std::string& file : (*model)->files) entry.stamps.push_back(stamp_of(file));
+  for (const std::string& file : (*model)->files) entry.stamps.emplace_back(file);
   entry.stamps.front() = before;
   const std::lock_guard lock(mutex_);
   Entry& kept = models_[key];

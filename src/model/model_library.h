@@ -15,8 +15,11 @@
 
 namespace limber {
 
-/// Models by file and options. A model is imported anew when its URDF or one of its meshes has changed on disk; who
-/// holds the old one keeps it. [any]
+/// Everything that makes two imports the same, as one text. [any]
+std::string model_key(const std::string& path, const ImportOptions& options);
+
+/// Models by file and options. A model is imported anew when the content of its URDF or of one of its meshes has
+/// changed on disk; who holds the old one keeps it. [any]
 class ModelLibrary {
  public:
   Result<std::shared_ptr<const BodyModel>> load_urdf(const std::string& path, const ImportOptions& options = {});
@@ -29,7 +32,7 @@ class ModelLibrary {
     std::vector<FileStamp> stamps;  ///< Of BodyModel::files, in order.
   };
 
-  static bool is_fresh(const Entry& entry);
+  static bool is_fresh(Entry& entry);
 
   std::mutex mutex_;
   MeshLibrary meshes_;

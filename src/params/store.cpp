@@ -5,6 +5,7 @@
 #include <array>
 #include <bit>
 #include <cmath>
+#include <iterator>
 
 #include <fmt/format.h>
 
@@ -30,7 +31,7 @@ void make_room(std::vector<T>& v, std::size_t more) {
 
 Store::Store() {
   slots_.push_back({1, table_number(group_table()), 0, 0});
-  nodes_.push_back({&group_table(), "", nullptr, {}, {}, 0});
+  nodes_.push_back({&group_table(), "", nullptr, {}, {}, 0, 0});
   root_ = {0, 1};
   refresh_view();
 }
@@ -44,6 +45,27 @@ std::uint32_t Store::table_number(const Table& table) {
 
 void Store::refresh_view() {
   view_ = {slots_.data(), kept_.data(), live_.data(), static_cast<std::uint32_t>(slots_.size())};
+  for (StoreView* const copy : view_copies_) *copy = view_;
+}
+
+void Store::show_view(StoreView& copy) {
+  copy = view_;
+  view_copies_.push_back(&copy);
+}
+
+void Store::hide_view(StoreView& copy) { std::erase(view_copies_, &copy); }
+
+void Store::order_children(NodeId parent, std::span<const NodeId> first) {
+  if (!alive(parent)) return;
+  std::vector<NodeId>& children = nodes_[parent.slot].children;
+  std::vector<bool> named(slots_.size());
+  for (const NodeId child : first) named[child.slot] = true;
+  std::vector<NodeId> ordered(first.begin(), first.end());
+  std::copy_if(children.begin(), children.end(), std::back_inserter(ordered),
+               [&](NodeId child) { return !named[child.slot]; });
+  LIMBER_CHECK(ordered.size() == children.size());
+  children = std::move(ordered);
+  structure_version_++;
 }
 
 std::uint32_t Store::take_block(std::vector<double>& block, std::vector<std::vector<std::uint32_t>>& spare,
@@ -78,7 +100,7 @@ NodeId Store::add(const Table& table, NodeId parent, std::string name, void* thi
   s.kept = take_block(kept_, spare_kept_, table.kept_width());
   s.live = take_block(live_, spare_live_, table.live_width());
   const NodeId id{slot, s.generation};
-  nodes_[slot] = {&table, std::move(name), thing, parent, {}, 0};
+  nodes_[slot] = {&table, std::move(name), thing, parent, {}, 0, 0};
   nodes_[parent.slot].children.push_back(id);
   child_of_.insert(slot);
   for (const Row& row : table.rows()) {
@@ -98,7 +120,7 @@ NodeId Store::add_group(NodeId parent, std::string name) {
 bool Store::is_group(NodeId id) const { return alive(id) && nodes_[id.slot].table == &group_table(); }
 
 const Store::Node& Store::nobody() {
-  static const Node none{&group_table(), "", nullptr, {}, {}, 0};
+  static const Node none{&group_table(), "", nullptr, {}, {}, 0, 0};
   return none;
 }
 
@@ -193,6 +215,7 @@ Result<SetOutcome> Store::set(NodeId id, const Row& row, std::span<const double>
       return Error{fmt::format("{}: {}", where(), may.error())};
     }
   }
+  if (saying_) say(id, row);
   if (row.view()) {
     row.write(the_thing, taken.data());
     return outcome;

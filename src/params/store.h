@@ -83,11 +83,32 @@ class Store {
   /// world.
   double* tell(NodeId id, const Row& row) { return slot_values(id, row); }
   double* live_block(NodeId id) { return live_.data() + slots_[id.slot].live; }
+  const double* live_block(NodeId id) const { return live_.data() + slots_[id.slot].live; }
   double* kept_block(NodeId id) {
     kept_version_++;
     return kept_.data() + slots_[id.slot].kept;
   }
   const double* kept_block(NodeId id) const { return kept_.data() + slots_[id.slot].kept; }
+
+  /// The rows that a scene's run has said of a node, a bit a row: what went through the door while a Saying lived,
+  /// views and the rows behind them, and what say() added.
+  std::uint64_t said(NodeId id) const { return node(id).said; }
+  void say(NodeId id, std::uint64_t rows) {
+    if (alive(id)) nodes_[id.slot].said |= rows;
+  }
+  void say(NodeId id, const Row& row) { say(id, std::uint64_t{1} << row.index); }
+  /// While one lives, what is set counts as said.
+  class Saying {
+   public:
+    Saying(Store& store, bool said) : store_(store), before_(store.saying_) { store_.saying_ = said; }
+    ~Saying() { store_.saying_ = before_; }
+    Saying(const Saying&) = delete;
+    Saying& operator=(const Saying&) = delete;
+
+   private:
+    Store& store_;
+    bool before_;
+  };
 
   /// Marks a row as if it had been set.
   void mark(NodeId id, const Row& row);
@@ -123,6 +144,11 @@ class Store {
   std::uint64_t kept_version() const { return kept_version_; }
   std::uint64_t structure_version() const { return structure_version_; }
   const StoreView* view() const { return &view_; }
+  /// Keeps `copy` like view() until hide_view(): for readers that may turn to another store.
+  void show_view(StoreView& copy);
+  void hide_view(StoreView& copy);
+  /// Brings children into this order; those that are not named stand behind, in the order that they had.
+  void order_children(NodeId parent, std::span<const NodeId> first);
   std::uint32_t table_number(const Table& table);
   std::span<const Table* const> tables() const { return tables_; }
 
@@ -141,6 +167,7 @@ class Store {
     NodeId parent;
     std::vector<NodeId> children;
     std::uint64_t marks = 0;
+    std::uint64_t said = 0;
   };
   // children are found by parent and name; the set holds slots, the names stand in the nodes alone
   struct ChildKey {
@@ -199,6 +226,8 @@ class Store {
   std::uint64_t kept_version_ = 0;
   std::uint64_t structure_version_ = 0;
   StoreView view_;
+  std::vector<StoreView*> view_copies_;
+  bool saying_ = false;
 };
 
 }  // namespace limber

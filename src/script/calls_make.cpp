@@ -8,7 +8,6 @@
 #include "base/text.h"
 #include "model/hull.h"
 #include "model/mass_properties.h"
-#include "model/model_library.h"
 #include "script/context.h"
 
 namespace limber::calls {
@@ -30,10 +29,14 @@ void place(BuildOptions& build, const double* pose) {
   if (std::isfinite(pose[3])) build.rotation = glm::normalize(quat_xyzw(pose[3], pose[4], pose[5], pose[6]));
 }
 
-// kept for the program's life: a reset or another scene loads the same file at no cost
-ModelLibrary& models() {
-  static ModelLibrary library;
-  return library;
+// what the top level gives when it makes a thing is said as if it were set
+void say(const ScriptContext& c, NodeId id, std::string_view row) {
+  Store& store = c.world->store();
+  if (c.answer.top_level != 0) store.say(id, store.table(id).at(row));
+}
+void say_place(const ScriptContext& c, NodeId id, const BuildOptions& place) {
+  if (place.position) say(c, id, "position");
+  if (place.rotation) say(c, id, "rotation");
 }
 
 void say_problems(const BodyModel& model) {
@@ -58,11 +61,11 @@ std::shared_ptr<MeshModel> mesh_of_points(std::vector<Vec3> points, std::string 
   return mesh;
 }
 
-Result<std::shared_ptr<const MeshModel>> mesh_of_file(const ScriptContext& c, std::string_view file, const Vec3& scale,
+Result<std::shared_ptr<const MeshModel>> mesh_of_file(ScriptContext& c, std::string_view file, const Vec3& scale,
                                                       int max_vertices) {
-  const Result<std::string> path = c.files.find(file);
+  const Result<std::string> path = c.sources->find(c.files, file);
   if (!path) return Error{path.error()};
-  Result<std::shared_ptr<const MeshModel>> mesh = models().meshes().load(*path, scale);
+  Result<std::shared_ptr<const MeshModel>> mesh = c.sources->mesh(*path, scale);
   if (!mesh || max_vertices == HullLimits{}.max_vertices) return mesh;
   auto changed = std::make_shared<MeshModel>(**mesh);
   const Hull hull = reduced_hull(changed->vertices, {std::min(16, max_vertices), max_vertices, HullLimits{}.tolerance});
@@ -75,21 +78,21 @@ Result<std::shared_ptr<const MeshModel>> mesh_of_file(const ScriptContext& c, st
 
 std::int32_t add_body(void* c, const char* name, std::int32_t length) {
   ScriptContext& context = context_of(c);
-  return made(context, context.world.add_body(std::string(text_of(name, length))));
+  return made(context, context.world->add_body(std::string(text_of(name, length))));
 }
 
 std::int32_t copy_body(void* c, std::int32_t slot, std::int32_t generation, const char* name, std::int32_t length) {
   ScriptContext& context = context_of(c);
   const Body* source = thing_of<Body>(context, id_of(slot, generation));
   if (source == nullptr) return kGone;
-  return made(context, context.world.copy_body(*source, std::string(text_of(name, length))));
+  return made(context, context.world->copy_body(*source, std::string(text_of(name, length))));
 }
 
 std::int32_t remove_body(void* c, std::int32_t slot, std::int32_t generation) {
   ScriptContext& context = context_of(c);
   Body* body = thing_of<Body>(context, id_of(slot, generation));
   if (body == nullptr) return kGone;
-  context.world.remove_body(*body);
+  context.world->remove_body(*body);
   return kOk;
 }
 
@@ -106,14 +109,17 @@ std::int32_t add_part(void* c, std::int32_t slot, std::int32_t generation, const
   const Pose at{said.position.value_or(usual.position), said.rotation.value_or(usual.rotation)};
   // a mass below zero: not said
   const double given = mass >= 0 ? mass : shape->model().kind == ShapeKind::plane ? 0 : 1;
-  return made(context, body->add_part(std::string(text_of(name, length)), *shape, given, at));
+  const Result<Part*> part = body->add_part(std::string(text_of(name, length)), *shape, given, at);
+  if (part && mass > 0) say(context, (*part)->id(), "mass");
+  if (part) say_place(context, (*part)->id(), said);
+  return made(context, part);
 }
 
 std::int32_t add_joint(void* c, std::int32_t slot, std::int32_t generation, const char* name, std::int32_t length,
                        const char* type, std::int32_t type_length, std::int32_t parent_slot, std::int32_t child_slot,
                        const double* at) {
   ScriptContext& context = context_of(c);
-  const Store& store = context.world.store();
+  const Store& store = context.world->store();
   const auto part_at = [&](std::int32_t part_slot) {
     const auto of_slot = static_cast<std::size_t>(part_slot);
     return thing_of<Part>(context,
@@ -161,7 +167,7 @@ std::int32_t add_shape(void* c, const char* name, std::int32_t length, const cha
     model.radius = n[0];
     model.height = n[1];
   }
-  return made(context, context.world.add_shape(std::string(text_of(name, length)), std::move(model)));
+  return made(context, context.world->add_shape(std::string(text_of(name, length)), std::move(model)));
 }
 
 std::int32_t add_child(void* c, std::int32_t slot, std::int32_t generation, std::int32_t child_slot,
@@ -170,7 +176,7 @@ std::int32_t add_child(void* c, std::int32_t slot, std::int32_t generation, std:
   Shape* shape = thing_of<Shape>(context, id_of(slot, generation));
   const Shape* child = thing_of<Shape>(context, id_of(child_slot, child_generation));
   if (shape == nullptr || child == nullptr) return kGone;
-  context.world.undo().keep(*shape);
+  context.world->undo().keep(*shape);
   const Result<void> done = shape->add_child(*child, pose_at(pose));
   return done ? kOk : context.refuse(done.error());
 }
@@ -194,7 +200,7 @@ std::int32_t add_mesh_shape(void* c, const char* name, std::int32_t length, cons
     for (Vec3& point : points) point *= scale;
     model.mesh = mesh_of_points(std::move(points), std::string(text_of(name, length)), max_vertices, 0);
   }
-  return made(context, context.world.add_shape(std::string(text_of(name, length)), std::move(model)));
+  return made(context, context.world->add_shape(std::string(text_of(name, length)), std::move(model)));
 }
 
 void urdf_clear(void* c) {
@@ -222,21 +228,22 @@ void urdf_package_path(void* c, const char* path, std::int32_t length) {
 std::int32_t load_urdf(void* c, const char* path, std::int32_t path_length, const char* name, std::int32_t length,
                        const double* pose) {
   ScriptContext& context = context_of(c);
-  const Result<std::string> file = context.files.find(text_of(path, path_length));
+  const Result<std::string> file = context.sources->find(context.files, text_of(path, path_length));
   if (!file) return context.refuse(file.error());
-  const bool known = context.loaded_files.contains(*file);
+  const bool known = context.sources->has_model(*file);
   if (!known && context.answer.top_level == 0) {
     return context.refuse(fmt::format(
         "'{}' was not loaded when the scene ran; a callback must not wait for a disk, so load it once at the top level",
         text_of(path, path_length)));
   }
-  const Result<std::shared_ptr<const BodyModel>> model = models().load_urdf(*file, context.import);
+  const Result<std::shared_ptr<const BodyModel>> model = context.sources->model(*file, context.import);
   if (!model) return context.refuse(model.error());
   if (!known) say_problems(**model);
-  context.loaded_files[*file] = true;
   place(context.build, pose);
   const std::string body_name = length > 0 ? std::string(text_of(name, length)) : (*model)->name;
-  return made(context, context.world.add_body(*model, body_name, context.build));
+  const Result<Body*> body = context.world->add_body(*model, body_name, context.build);
+  if (body) say_place(context, (*body)->id(), context.build);
+  return made(context, body);
 }
 
 }  // namespace limber::calls

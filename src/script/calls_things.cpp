@@ -21,8 +21,8 @@ std::int32_t item(ScriptContext& c, std::span<const std::unique_ptr<T>> list, st
 }
 
 std::int32_t list_at(ScriptContext& c, NodeId id, std::int32_t kind, std::int32_t i) {
-  if (kind == bodies) return item(c, c.world.bodies(), i);
-  if (kind == shapes) return item(c, c.world.shapes(), i);
+  if (kind == bodies) return item(c, c.world->bodies(), i);
+  if (kind == shapes) return item(c, c.world->shapes(), i);
   const Body* body = thing_of<Body>(c, id);
   if (body == nullptr) return kGone;
   if (kind == parts) return item(c, body->parts(), i);
@@ -47,13 +47,13 @@ std::size_t place_in(std::span<const std::unique_ptr<T>> list, const T* thing) {
 
 }  // namespace
 
-std::int32_t structure(void* c) { return static_cast<std::int32_t>(context_of(c).world.store().structure_version()); }
+std::int32_t structure(void* c) { return static_cast<std::int32_t>(context_of(c).world->store().structure_version()); }
 
 std::int32_t name(void* c, std::int32_t slot, std::int32_t generation) {
   ScriptContext& context = context_of(c);
   const NodeId id = id_of(slot, generation);
   if (!context.alive(id)) return kGone;
-  return context.say(context.world.store().name(id));
+  return context.say(context.world->store().name(id));
 }
 
 std::int32_t owner(void* c, std::int32_t slot, std::int32_t generation) {
@@ -76,7 +76,9 @@ std::int32_t related(void* c, std::int32_t slot, std::int32_t generation, std::i
     return context.tell(joint->motor() == nullptr ? NodeId{} : joint->motor()->id());
   }
   if (const Motor* motor = thing_of<Motor>(context, id)) return context.tell(motor->joint().id());
-  if (const Part* part = thing_of<Part>(context, id)) return context.tell(part->shape());
+  if (const Part* part = thing_of<Part>(context, id)) {
+    return context.tell(context.alive(part->shape()) ? part->shape() : NodeId{});
+  }
   const Body* body = thing_of<Body>(context, id);
   return context.tell(body == nullptr || body->root() == nullptr ? NodeId{} : body->root()->id());
 }
@@ -92,7 +94,7 @@ std::int32_t list_item(void* c, std::int32_t slot, std::int32_t generation, std:
 std::int32_t find(void* c, std::int32_t slot, std::int32_t generation, std::int32_t kind, const char* name,
                   std::int32_t length) {
   ScriptContext& context = context_of(c);
-  const World& world = context.world;
+  const World& world = *context.world;
   const std::string_view wanted = text_of(name, length);
   if (kind == bodies) return found(context, world.find_body(wanted), world.bodies(), "body", "there is", wanted);
   if (kind == shapes) return found(context, world.find_shape(wanted), world.shapes(), "shape", "there is", wanted);
@@ -111,7 +113,7 @@ std::int32_t find(void* c, std::int32_t slot, std::int32_t generation, std::int3
 double order(void* c, std::int32_t slot, std::int32_t generation) {
   // bodies first to last, within a body itself, its parts, joints, motors; then shapes; the gone ones last
   const ScriptContext& context = context_of(c);
-  const World& world = context.world;
+  const World& world = *context.world;
   const NodeId id = id_of(slot, generation);
   constexpr double kBody = 0x1p26;
   constexpr double kKind = 0x1p23;
@@ -162,7 +164,7 @@ std::int32_t state_hash(void* c, std::int32_t slot, std::int32_t generation) {
   if (const Body* body = thing_of<Body>(context, id)) {
     return context.say(fmt::format("{:016x}", body->state_hash(hash_bytes("limber"))));
   }
-  return context.say(fmt::format("{:016x}", context.hash(context.world.state_hash())));
+  return context.say(fmt::format("{:016x}", context.hash(context.world->state_hash())));
 }
 
 }  // namespace limber::calls

@@ -13,11 +13,11 @@ namespace limber::calls {
 namespace {
 
 const Table& numbered(const ScriptContext& c, std::int32_t table) {
-  return *c.world.store().tables()[static_cast<std::size_t>(table)];
+  return *c.world->store().tables()[static_cast<std::size_t>(table)];
 }
 
 const Row& row_of(const ScriptContext& c, NodeId id, std::int32_t row) {
-  return c.world.store().table(id).row(static_cast<std::uint32_t>(row));
+  return c.world->store().table(id).row(static_cast<std::uint32_t>(row));
 }
 
 std::string range_of(const Row& row) {
@@ -36,9 +36,10 @@ std::int32_t write(ScriptContext& c, NodeId id, const Row& row, std::span<const 
     return c.refuse(
         fmt::format("{}: '{}' takes finite numbers, not {}", label_of(c, id), row.name, values_text(values)));
   }
-  Store& store = c.world.store();
+  Store& store = c.world->store();
   // the command line's seed wins over the scene's
-  if (c.options.seed && c.answer.top_level != 0 && id == c.world.id() && row.name == "seed") return kOk;
+  if (c.options.seed && c.answer.top_level != 0 && id == c.world->id() && row.name == "seed") return kOk;
+  const Store::Saying saying(store, c.answer.top_level != 0);
   const Result<SetOutcome> outcome = store.set(id, row, values);
   if (!outcome) return c.refuse(outcome.error());
   if (!outcome->clamped) return kOk;
@@ -58,14 +59,14 @@ int own_index(const ScriptContext& c, NodeId id, const Row& row) {
 
 }  // namespace
 
-const LimberView* view(void* c) { return reinterpret_cast<const LimberView*>(context_of(c).world.store().view()); }
+const LimberView* view(void* c) { return reinterpret_cast<const LimberView*>(&context_of(c).view); }
 
 const LimberAnswer* answer(void* c) { return &context_of(c).answer; }
 
 std::int32_t class_table(void* c, std::int32_t which) {
   const Table* const tables[] = {&World::table(), &Body::table(),  &Part::table(),
                                  &Joint::table(), &Motor::table(), &Shape::table()};
-  return static_cast<std::int32_t>(context_of(c).world.store().table_number(*tables[which]));
+  return static_cast<std::int32_t>(context_of(c).world->store().table_number(*tables[which]));
 }
 
 std::int32_t row_count(void* c, std::int32_t table) {
@@ -92,7 +93,7 @@ std::int32_t get(void* c, std::int32_t slot, std::int32_t generation, std::int32
   ScriptContext& context = context_of(c);
   const NodeId id = id_of(slot, generation);
   if (!context.alive(id)) return kGone;
-  context.world.store().get(id, row_of(context, id, row), context.answer.number);
+  context.world->store().get(id, row_of(context, id, row), context.answer.number);
   return kOk;
 }
 
@@ -133,7 +134,7 @@ std::int32_t set_own(void* c, std::int32_t slot, std::int32_t generation, std::i
                     label_of(context, id), r.name));
   }
   std::array<double, 4> values{};
-  context.world.store().get(id, r, values.data());
+  context.world->store().get(id, r, values.data());
   values[static_cast<std::size_t>(own)] = x;
   return write(context, id, r, {values.data(), 3});
 }
@@ -170,7 +171,7 @@ std::int32_t act(void* c, std::int32_t slot, std::int32_t generation, std::int32
     return context.refuse(
         fmt::format("{}: '{}' takes finite numbers, not {}", label_of(context, id), r.name, values_text(args)));
   }
-  const Result<void> done = r.act(context.world.store().thing(id), args);
+  const Result<void> done = r.act(context.world->store().thing(id), args);
   if (!done) return context.refuse(fmt::format("{}: '{}' {}", label_of(context, id), r.name, done.error()));
   return kOk;
 }

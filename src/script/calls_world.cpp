@@ -80,9 +80,9 @@ std::int32_t stop_text(void* c) {
 
 std::int32_t read_lib(void* c, const char* name, std::int32_t length) {
   ScriptContext& context = context_of(c);
-  const Result<std::string> file = context.files.find_lib(text_of(name, length));
+  const Result<std::string> file = context.sources->find_lib(context.files, text_of(name, length));
   if (!file) return context.refuse(file.error());
-  Result<std::string> text = read_script(*file);
+  Result<std::string> text = context.sources->text(*file);
   if (!text) return context.refuse(text.error());
   // the name that errors show, a line of its own, then the text
   return context.say(context.files.shown(*file) + "\n" + *text);
@@ -103,7 +103,7 @@ double noise(void*, double x, double y, double z) { return gradient_noise(x, y, 
 
 std::int32_t contact(void* c, std::int32_t index) {
   ScriptContext& context = context_of(c);
-  const std::span<const ContactEvent> list = context.world.contacts();
+  const std::span<const ContactEvent> list = context.world->contacts();
   if (index >= static_cast<std::int32_t>(list.size())) return kRefused;
   const ContactEvent& event = list[static_cast<std::size_t>(index)];
   // a callback before may have removed one of the two
@@ -166,6 +166,11 @@ std::int32_t param_unit(void* c, const char* text, std::int32_t length) {
   return kOk;
 }
 
+void param_rerun(void* c) {
+  ScriptContext& context = context_of(c);
+  context.rerun_rows |= std::uint64_t{1} << (context.param_rows.size() - 1);
+}
+
 void param_step(void* c, double step) { context_of(c).param_rows.back().step = step; }
 
 void param_choice(void* c, const char* text, std::int32_t length) {
@@ -176,11 +181,21 @@ void param_choice(void* c, const char* text, std::int32_t length) {
 
 std::int32_t param_done(void* c) {
   ScriptContext& context = context_of(c);
-  context.params = std::make_unique<ParamsNode>(context.world.store(), std::move(context.param_rows));
+  context.params = std::make_unique<ParamsNode>(context.world->store(), std::move(context.param_rows));
   context.param_rows.clear();
+  if (context.beside != nullptr) context.params->keep(context.beside->params);
+  return params_node(c);
+}
+
+std::int32_t params_node(void* c) {
+  ScriptContext& context = context_of(c);
   context.tell(context.params->id());
-  context.answer.count = static_cast<std::int32_t>(context.world.store().table_number(context.params->table()));
+  context.answer.count = static_cast<std::int32_t>(context.world->store().table_number(context.params->table()));
   return kOk;
+}
+
+void handles(void* c, std::int32_t** ids, std::int32_t count) {
+  context_of(c).things = {ids, static_cast<std::size_t>(count)};
 }
 
 }  // namespace limber::calls

@@ -8,7 +8,13 @@
 namespace limber {
 
 ScriptContext::ScriptContext(World& w, ScriptHost& h, SceneOptions o)
-    : world(w), host(h), options(std::move(o)), search([this] { return guard->stop_asked(); }) {}
+    : world(&w), host(h), options(std::move(o)), search([this] { return guard->stop_asked(); }) {
+  world->store().show_view(view);
+}
+
+ScriptContext::~ScriptContext() {
+  if (world != nullptr) world->store().hide_view(view);
+}
 
 std::int32_t ScriptContext::say(std::string what) {
   text = std::move(what);
@@ -26,10 +32,10 @@ std::int32_t ScriptContext::tell(NodeId id) {
 
 Random& ScriptContext::generator() {
   // a seed that comes later counts from the next start
-  const bool anew = !seeded_with || (answer.top_level != 0 && *seeded_with != world.seed());
+  const bool anew = !seeded_with || (answer.top_level != 0 && *seeded_with != world->seed());
   if (anew) {
-    seeded_with = world.seed();
-    random = Random(world.seed(), random_name);
+    seeded_with = world->seed();
+    random = Random(world->seed(), random_name);
   }
   return random;
 }
@@ -38,7 +44,7 @@ std::uint64_t ScriptContext::hash(std::uint64_t start) {
   const auto& words = generator().state();
   start = hash_bytes({reinterpret_cast<const char*>(words.data()), sizeof words}, start);
   if (params == nullptr) return start;
-  const double* kept = std::as_const(world.store()).kept_block(params->id());
+  const double* kept = std::as_const(world->store()).kept_block(params->id());
   return hash_bytes({reinterpret_cast<const char*>(kept), params->table().kept_width() * sizeof(double)}, start);
 }
 
@@ -47,12 +53,12 @@ void ScriptContext::begin_call() {
   random_before_ = random;
   seeded_before_ = seeded_with;
   reset_wanted = false;
-  world.undo().begin();
+  world->undo().begin();
 }
 
 void ScriptContext::end_call(bool good) {
   if (good) {
-    world.undo().end();
+    world->undo().end();
     for (Held& h : held) {
       if (h.way == Way::all) {
         host.send(std::move(h.message));
@@ -64,7 +70,7 @@ void ScriptContext::end_call(bool good) {
     }
     if (reset_wanted) host.ask_reset();
   } else {
-    world.undo().take_back();
+    world->undo().take_back();
     random = random_before_;
     seeded_with = seeded_before_;
   }
@@ -72,7 +78,7 @@ void ScriptContext::end_call(bool good) {
 }
 
 std::string label_of(const ScriptContext& c, NodeId id) {
-  const Store& store = c.world.store();
+  const Store& store = c.world->store();
   if (!store.alive(id)) return "a thing that no longer exists";
   const Table* const table = &store.table(id);
   if (table == &World::table()) return "sim";

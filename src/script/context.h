@@ -2,9 +2,9 @@
 #pragma once
 
 #include <cstdint>
-#include <map>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -16,7 +16,9 @@
 #include "script/host.h"
 #include "script/match.h"
 #include "script/params_node.h"
+#include "script/run_inputs.h"
 #include "script/scene_options.h"
+#include "script/sources.h"
 #include "sim/world.h"
 
 namespace limber {
@@ -25,11 +27,17 @@ class Guard;
 
 struct ScriptContext {
   ScriptContext(World& w, ScriptHost& h, SceneOptions o);
+  ~ScriptContext();
+  ScriptContext(const ScriptContext&) = delete;
+  ScriptContext& operator=(const ScriptContext&) = delete;
 
-  World& world;
+  World* world;    ///< Another one once a run beside the show becomes the show; null once it was replaced.
+  StoreView view;  ///< Of that world's store: one address for the life of the context.
   ScriptHost& host;
   SceneOptions options;
   ScriptFiles files;
+  std::shared_ptr<Sources> sources = std::make_shared<Sources>();
+  const RunInputs* beside = nullptr;  ///< During a run beside the show: what it may read of it.
 
   LimberAnswer answer{};
   std::string text;  ///< What `answer.text` points to.
@@ -52,12 +60,14 @@ struct ScriptContext {
   Message message;
   std::vector<Row> param_rows;
 
-  std::map<std::string, bool> loaded_files;  ///< URDF files that the run loaded: callbacks may load them again.
   OscPlan plan;
   Origin sender;  ///< Of the message that is handled now.
   bool handling_message = false;
   std::int32_t handlers = 0;  ///< Registered by osc:on.
   std::unique_ptr<ParamsNode> params;
+  std::uint64_t rerun_rows = 0;           ///< Parameters with `rerun`, a bit a row.
+  std::optional<double> timers_at;        ///< Time at which timers were looked at last.
+  std::span<std::int32_t* const> things;  ///< Slot and generation of every handle, while these are given others.
 
   // guarded calls: what one asks of the outside waits until it has ended well
   Guard* guard = nullptr;  ///< Of the scene's Vm.
@@ -81,7 +91,7 @@ struct ScriptContext {
     return kRefused;
   }
   std::int32_t tell(NodeId id);
-  bool alive(NodeId id) const { return world.store().alive(id); }
+  bool alive(NodeId id) const { return world->store().alive(id); }
 
  private:
   Random random_before_;
@@ -98,8 +108,8 @@ inline std::string_view text_of(const char* text, std::int32_t length) {
 /// The thing of an id when it is alive and of that class, else null.
 template <class T>
 T* thing_of(const ScriptContext& c, NodeId id) {
-  if (!c.alive(id) || &c.world.store().table(id) != &T::table()) return nullptr;
-  return static_cast<T*>(c.world.store().thing(id));
+  if (!c.alive(id) || &c.world->store().table(id) != &T::table()) return nullptr;
+  return static_cast<T*>(c.world->store().thing(id));
 }
 /// How errors name a thing: "motor 'arm/joint_2'", "body 'arm'", "sim".
 std::string label_of(const ScriptContext& c, NodeId id);

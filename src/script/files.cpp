@@ -58,7 +58,7 @@ std::string ScriptFiles::shown(const std::string& path) const {
   return relative.string();
 }
 
-Result<std::string> ScriptFiles::find(std::string_view name) const {
+Result<std::string> ScriptFiles::find(std::string_view name, std::vector<std::string>* passed) const {
   if (name.empty()) return Error{"a file's name must not be empty"};
   std::vector<fs::path> places = {absolute_of(fs::path(name))};
   if (!fs::path(name).is_absolute()) {
@@ -68,12 +68,13 @@ Result<std::string> ScriptFiles::find(std::string_view name) const {
   std::string looked;
   for (const fs::path& place : places) {
     if (is_file(place)) return place.string();
+    if (passed != nullptr) passed->push_back(place.string());
     looked += fmt::format("\n  {}", place.string());
   }
   return Error{fmt::format("there is no file '{}'; looked for{}", name, looked)};
 }
 
-Result<std::string> ScriptFiles::find_lib(std::string_view name) const {
+Result<std::string> ScriptFiles::find_lib(std::string_view name, std::vector<std::string>* passed) const {
   std::string file(name);
   for (char& c : file) {
     if (c == '.') c = '/';
@@ -84,7 +85,10 @@ Result<std::string> ScriptFiles::find_lib(std::string_view name) const {
     const fs::path folder = fs::path(root) / "scripts" / "lib";
     const fs::path place = folder / (file + ".lua");
     looked += fmt::format("\n  {}", place.string());
-    if (!is_file(place)) continue;
+    if (!is_file(place)) {
+      if (passed != nullptr) passed->push_back(place.string());
+      continue;
+    }
     // a link must not lead outside
     std::error_code fault;
     const fs::path real = fs::canonical(place, fault);
@@ -105,9 +109,7 @@ Result<std::string> read_script(const std::string& path) {
   if (size > kMostBytes) return Error{fmt::format("{} has {} bytes; a script may have 1 MB", path, size)};
   std::ifstream in(path, std::ios::binary);
   if (!in) return Error{fmt::format("{} can't be read; look at its permissions", path)};
-  std::string text{std::istreambuf_iterator<char>(in), {}};
-  if (text.starts_with("\xef\xbb\xbf")) text.erase(0, 3);
-  return text;
+  return std::string{std::istreambuf_iterator<char>(in), {}};
 }
 
 }  // namespace limber

@@ -3,6 +3,7 @@
 
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "base/result.h"
 
@@ -18,10 +19,11 @@ class ScriptFiles {
   const std::string& show_folder() const { return show_; }
   /// A path as messages show it: from the show's folder on when it lies there.
   std::string shown(const std::string& path) const;
-  /// As given, then from the scene's folder upwards, then in the installed data. The error lists every place.
-  Result<std::string> find(std::string_view name) const;
+  /// As given, then from the scene's folder upwards, then in the installed data. The error lists every place. `passed`
+  /// gets the places where it was not: a file that comes there is another answer.
+  Result<std::string> find(std::string_view name, std::vector<std::string>* passed = nullptr) const;
   /// The file of `require "a.b"`: scripts/lib/a/b.lua of the show, then of the installed data; never outside.
-  Result<std::string> find_lib(std::string_view name) const;
+  Result<std::string> find_lib(std::string_view name, std::vector<std::string>* passed = nullptr) const;
 
  private:
   std::string scene_folder_;
@@ -29,7 +31,7 @@ class ScriptFiles {
   std::string data_dir_;
 };
 
-/// A whole script. Errors: not there, not readable, above 1 MB.
+/// A whole script, byte by byte. Errors: not there, not readable, above 1 MB.
 Result<std::string> read_script(const std::string& path);
 
 }  // namespace limber

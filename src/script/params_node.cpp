@@ -2,6 +2,7 @@
 #include "script/params_node.h"
 
 #include <algorithm>
+#include <array>
 #include <memory>
 #include <mutex>
 
@@ -28,11 +29,59 @@ const Table& table_of(std::vector<Row> rows) {
   return *tables.back();
 }
 
+const std::string& label(const Row& row, double value) { return row.choices[static_cast<std::size_t>(value)]; }
+
+bool same_default(const Row& row, const Row& before) {
+  if (row.type == RowType::choice) return label(row, row.initial[0]) == label(before, before.initial[0]);
+  return std::equal(row.initial.begin(), row.initial.begin() + row.width, before.initial.begin());
+}
+
+std::array<double, 4> kept_values(const Row& row, const LiveParam& before) {
+  std::array<double, 4> values = row.initial;
+  if (row.type != before.row.type || !same_default(row, before.row)) return values;
+  if (row.type == RowType::choice) {
+    // a choice is its label, wherever that stands now
+    const auto found = std::find(row.choices.begin(), row.choices.end(), label(before.row, before.values[0]));
+    if (found != row.choices.end()) values[0] = static_cast<double>(found - row.choices.begin());
+    return values;
+  }
+  for (std::size_t i = 0; i < row.width; i++) values[i] = std::clamp(before.values[i], row.low(i), row.high(i));
+  return values;
+}
+
+bool same_value(const Row& row, const std::array<double, 4>& values, const LiveParam& before) {
+  if (row.type != before.row.type) return false;
+  if (row.type == RowType::choice) return label(row, values[0]) == label(before.row, before.values[0]);
+  return std::equal(values.begin(), values.begin() + row.width, before.values.begin());
+}
+
 }  // namespace
 
 ParamsNode::ParamsNode(Store& store, std::vector<Row> rows)
     : store_(store), id_(store.add(table_of(std::move(rows)), store.root(), "scene", this)) {}
 
 ParamsNode::~ParamsNode() { store_.remove(id_); }
+
+std::vector<LiveParam> ParamsNode::live() const {
+  std::vector<LiveParam> params;
+  for (const Row& row : table().rows()) {
+    LiveParam& param = params.emplace_back(LiveParam{row, {}});
+    store_.get(id_, row, param.values.data());
+  }
+  return params;
+}
+
+std::uint64_t ParamsNode::keep(std::span<const LiveParam> before) {
+  std::uint64_t others = 0;
+  for (const Row& row : table().rows()) {
+    const auto known =
+        std::find_if(before.begin(), before.end(), [&](const LiveParam& p) { return p.row.name == row.name; });
+    if (known == before.end()) continue;  // a new one
+    const std::array<double, 4> kept = kept_values(row, *known);
+    std::copy_n(kept.data(), row.width, store_.tell(id_, row));
+    if (!same_value(row, kept, *known)) others |= std::uint64_t{1} << row.index;
+  }
+  return others;
+}
 
 }  // namespace limber

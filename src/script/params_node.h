@@ -1,9 +1,11 @@
 // ParamsNode: a scene's own parameters (`params { … }`) as the node /scene of the store. [sim]
 #pragma once
 
+#include <span>
 #include <vector>
 
 #include "params/store.h"
+#include "script/run_inputs.h"
 
 namespace limber {
 
@@ -17,6 +19,13 @@ class ParamsNode {
 
   NodeId id() const { return id_; }
   const Table& table() const { return store_.table(id_); }
+
+  /// The rows with the values in force.
+  std::vector<LiveParam> live() const;
+  /// Takes over what the parameters of the run before hold: a value whose default stayed, within the new range and
+  /// choices. An edited default or another type starts at the default. The answer: rows that did not stay as they
+  /// were, a bit a row.
+  std::uint64_t keep(std::span<const LiveParam> before);
 
  private:
   Store& store_;

@@ -14,29 +14,42 @@ Scene::Scene(World& world, ScriptHost& host, SceneOptions options, VmMode wanted
 
 Scene::~Scene() = default;
 
-Result<void> Scene::run(const std::string& file) {
-  Result<std::string> text = read_script(file);
-  if (!text) return Error{text.error()};
+Result<void> Scene::run(const std::string& file, const RunInputs* beside) {
   ScriptContext& c = *context_;
+  if (beside != nullptr && beside->sources != nullptr) c.sources = std::make_shared<Sources>(beside->sources);
   c.files = ScriptFiles(file, c.options.data_dir);
+  fault_ = {c.files.shown(file), 0};
+  const Result<std::string> text = c.sources->text(file);
+  if (!text) return Error{text.error()};
   c.random_name = std::filesystem::path(file).filename().string();
   if (c.options.seed) {
     const auto seed = static_cast<double>(*c.options.seed);
-    const Result<SetOutcome> set = c.world.store().set(c.world.id(), "seed", {&seed, 1});
+    const Result<SetOutcome> set = c.world->store().set(c.world->id(), "seed", {&seed, 1});
     if (!set) return Error{set.error()};
   }
+  if (beside != nullptr) {
+    c.beside = beside;
+    c.world->restart_time(beside->tick, beside->time);
+    vm_->begin_beside(beside->state);
+  }
   c.answer.top_level = 1;
-  const Result<void> ran = vm_->run(*text, c.files.shown(file));
+  const Result<void> ran = vm_->run(*text, c.files.shown(file), fault_);
   c.generator();  // the seed as the top level leaves it
   c.answer.top_level = 0;
-  if (!ran) return ran;
-  c.host.plan_osc(c.plan);
-  return {};
+  c.beside = nullptr;
+  c.sources->close();
+  if (ran && beside == nullptr) c.host.plan_osc(c.plan);
+  return ran;
 }
+
+std::shared_ptr<const Sources> Scene::sources() const { return context_->sources; }
 
 void Scene::start() { vm_->start(); }
 
-void Scene::tick(double dt) { vm_->tick(dt); }
+void Scene::tick(double dt) {
+  context_->timers_at = context_->world->time();
+  vm_->tick(dt);
+}
 
 bool Scene::listens() const { return context_->handlers > 0; }
 

@@ -2,19 +2,30 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <string>
+#include <vector>
 
+#include "base/id.h"
 #include "base/message.h"
 #include "base/result.h"
 #include "script/host.h"
+#include "script/run_inputs.h"
 #include "script/scene_options.h"
 
 namespace limber {
 
+class Sources;
 class World;
 class Vm;
 struct ScriptContext;
+
+/// A place in a script.
+struct ScriptPlace {
+  std::string file;
+  int line = 0;
+};
 
 class Scene {
  public:
@@ -26,7 +37,13 @@ class Scene {
   Scene& operator=(const Scene&) = delete;
 
   /// Runs the file: the top level. The error has file:line: what, the source line and the traceback. Once only.
-  Result<void> run(const std::string& file);
+  /// `beside`: the run is one beside a show, which hears nothing of it, and may read that much of the show; on any
+  /// thread, in a world of its own.
+  Result<void> run(const std::string& file, const RunInputs* beside = nullptr);
+  /// Where the run failed: the file as messages show it, the line or 0.
+  const ScriptPlace& fault() const { return fault_; }
+  /// What the run has read so far.
+  std::shared_ptr<const Sources> sources() const;
   /// The callbacks of on_start; the world is settled before.
   void start();
   /// Timers, contacts of the tick before, on_step with `dt` seconds, each in the order of registration.
@@ -43,6 +60,20 @@ class Scene {
   void disarm();
   /// A world's hash with the bits of the scene's generator and parameters.
   std::uint64_t state_hash(std::uint64_t start) const;
+
+  /// What a run beside this show may read of it.
+  RunInputs inputs();
+  /// After a good run beside the show, still on its thread: what takes long of becoming the show.
+  void prepare();
+  /// The run beside the show `before` (null: there was none) becomes the show: its handles are given the ids that
+  /// things have in `world`; parameters, `state` and the beat of timers are handed over. The answer: rows of the
+  /// parameters that did not stay as they were. `before` may then be destroyed on any thread.
+  std::uint64_t become_live(World& world, const std::function<NodeId(NodeId)>& live_id, Scene* before);
+  /// The node of the scene's parameters, or a null id.
+  NodeId params() const;
+  /// Values of the parameters with `rerun`, one after the other.
+  void rerun_values(std::vector<double>& out) const;
+
   /// Every name that a scene sees, one a line: globals, library.member, thing.member, thing:method.
   std::string names();
   /// The folder that the scene's show lives in.
@@ -51,6 +82,7 @@ class Scene {
  private:
   std::unique_ptr<ScriptContext> context_;
   std::unique_ptr<Vm> vm_;
+  ScriptPlace fault_;
 };
 
 }  // namespace limber

@@ -10,6 +10,7 @@
 #include "base/log.h"
 #include "script/context.h"
 #include "script/prelude.h"
+#include "script/scene.h"
 
 namespace limber {
 
@@ -103,7 +104,7 @@ void Vm::load_prelude(ScriptContext& context) {
   lua_setfield(L, -2, "api");
   lua_pushlightuserdata(L, &context);
   lua_setfield(L, -2, "context");
-  const NodeId world = context.world.id();
+  const NodeId world = context.world->id();
   lua_pushnumber(L, world.slot);
   lua_setfield(L, -2, "world_slot");
   lua_pushnumber(L, world.generation);
@@ -147,6 +148,8 @@ void Vm::keep_entries() {
     const int handler = keep("handler");
     const int stopped_fault = keep("stopped_fault");
     guard_.use(handler, stopped_fault, keep("failed"));
+    lua_pushvalue(L, -1);
+    entries_ = luaL_ref(L, LUA_REGISTRYINDEX);
   }
   lua_settop(L, 0);
 }
@@ -162,7 +165,7 @@ bool Vm::call(int arguments, int results) {
   return false;
 }
 
-Result<void> Vm::run(std::string_view text, std::string_view name) {
+Result<void> Vm::run(std::string_view text, std::string_view name, ScriptPlace& fault) {
   lua_State* const L = state_.get();
   collector_->begin_run();
   lua_rawgeti(L, LUA_REGISTRYINDEX, run_);
@@ -174,6 +177,7 @@ Result<void> Vm::run(std::string_view text, std::string_view name) {
   collector_->end_run();
   if (good) return {};
   if (!called) return Error{fmt::format("{}: the scene could not be run", name)};
+  fault = {guard_.fault().file, guard_.fault().line};
   return Error{guard_.fault().text};
 }
 

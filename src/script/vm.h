@@ -16,6 +16,7 @@ struct lua_State;
 namespace limber {
 
 struct ScriptContext;
+struct ScriptPlace;
 
 class Vm {
  public:
@@ -26,8 +27,9 @@ class Vm {
   Vm(const Vm&) = delete;
   Vm& operator=(const Vm&) = delete;
 
-  /// Runs a scene's text in a fresh environment. The error: file:line: what, the source line, the traceback. [sim]
-  Result<void> run(std::string_view text, std::string_view name);
+  /// Runs a scene's text in a fresh environment. The error: file:line: what, the source line, the traceback; `fault`:
+  /// its place. [sim]
+  Result<void> run(std::string_view text, std::string_view name, ScriptPlace& fault);
   /// The callbacks of on_start. Those that err are told to the host. [sim]
   void start();
   /// Timers, contacts, on_step. Allocates nothing here; what scripts make is Lua's. [sim]
@@ -43,6 +45,18 @@ class Vm {
   /// Draft to live, once the other Vm has gone or was disarmed; false while it has not.
   bool arm() { return guard_.arm(); }
   void disarm() { guard_.disarm(); }
+
+  /// `state` as plain data: text of its own, equal where the data are. [sim]
+  std::string state_text();
+  /// Before a run beside the show: `state` starts as that text; nothing is compiled until become_live().
+  void begin_beside(std::string_view state);
+  /// After the run: which keys of `state` it wrote; every handle is told to the context (ScriptContext::things).
+  void prepare();
+  /// `state` of the show that this run takes the place of; keys that the run wrote itself stay. [sim]
+  void take_state(std::string_view state);
+  /// Handles have other ids now; timers go on from where they were looked at last, if they were. [sim]
+  void become_live(std::optional<double> timers_at);
+
   /// Collects for about 100 µs when there is enough to collect. The collector rests at all other times. [sim]
   void collect_garbage();
 
@@ -50,6 +64,7 @@ class Vm {
   void load_prelude(ScriptContext& context);
   void keep_entries();
   bool call(int arguments, int results);
+  void push_entry(const char* name);
 
   struct Close {
     void operator()(lua_State* state) const;
@@ -62,6 +77,7 @@ class Vm {
   int tick_ = -1;
   int message_ = -1;
   int names_ = -1;
+  int entries_ = -1;  // the table that these are of
 };
 
 }  // namespace limber

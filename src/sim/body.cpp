@@ -224,16 +224,18 @@ void Body::build_motor(Joint& joint, const JointModel& m, bool servo) {
 }
 
 void Body::build_copy(const Body& source) {
+  const Store& theirs = source.store();
   model_ = source.model_;
   const auto copy_values = [&](NodeId from, NodeId to, const Table& table) {
-    std::copy_n(std::as_const(store()).kept_block(from), table.kept_width(), store().kept_block(to));
-    std::copy_n(store().live_block(from), table.live_width(), store().live_block(to));
+    std::copy_n(theirs.kept_block(from), table.kept_width(), store().kept_block(to));
+    std::copy_n(theirs.live_block(from), table.live_width(), store().live_block(to));
+    store().say(to, theirs.said(from));  // a copy of what was said
   };
   for (const auto& from : source.parts_) {
-    const double mass = store().values(from->id(), Part::table().at("mass"))[0];
+    const double mass = theirs.values(from->id(), Part::table().at("mass"))[0];
     parts_.push_back(std::make_unique<Part>(*this, part_group_, from->name(), from->geometry(), mass, from->pose()));
     Part& part = *parts_.back();
-    part.set_shape(from->shape());
+    part.set_shape(world_.same_shape(source.world_, from->shape()));
     part.set_start_pose(from->start_pose());
     copy_values(from->id(), part.id(), Part::table());
   }
@@ -243,7 +245,7 @@ void Body::build_copy(const Body& source) {
   for (std::size_t i = 0; i < parts_.size(); i++) {
     parts_[i]->settle();
     source.parts_[i]->settle();
-    parts_[i]->stand_like(*source.parts_[i]);
+    parts_[i]->stand(source.parts_[i]->stance());
   }
   for (const auto& from : source.joints_) {
     Part& parent = *find_part(from->parent().name());

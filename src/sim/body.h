@@ -71,6 +71,13 @@ class Body {
   void reset();
   /// The present pose becomes the start pose.
   void take_start_pose();
+  /// The pose of a body of the same making becomes the start pose.
+  void take_start_pose(const Body& other);
+
+  /// For each part, by number, the part at whose end of the joints it hangs: the first that no joint leads to.
+  std::vector<std::size_t> trees() const;
+  /// Moves the parts of one tree rigidly, so that its first part is at `pose`; velocities stay.
+  void move_tree(std::size_t first, const Pose& pose);
 
   /// A part's pose was set by hand: joints read it anew before the next step.
   void note_moved();

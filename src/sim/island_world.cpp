@@ -39,7 +39,8 @@ class Dispatcher : public btCollisionDispatcher {
 }  // namespace
 
 WorldParts::WorldParts(const WorldSetup& setup) {
-  gDbvtMargin = to_scalar(setup.broadphase_margin);
+  // shared by all worlds, and one may be made while another is stepped
+  if (gDbvtMargin != to_scalar(setup.broadphase_margin)) gDbvtMargin = to_scalar(setup.broadphase_margin);
   // Bullet's own pool of 4096 contact pairs: a larger one makes a new world slow (100 ms for 65536), and more pairs
   // than it holds cost no measurable time (arms-1000)
   configuration = std::make_unique<btDefaultCollisionConfiguration>();

@@ -67,6 +67,7 @@ class Joint {
   void read_anew();
   /// The angles told now, full turns included, are the start's; the next read_anew() comes back to them.
   void take_start();
+  void take_start(const Joint& other) { start_angles_ = other.constraint_->angles(); }
   void go_to_start();
   /// Into Bullet's world and out of it; the body says when.
   void enter();

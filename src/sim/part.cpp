@@ -143,12 +143,26 @@ void Part::set_velocity(const Vec3& linear, const Vec3& angular) {
   store.mark(id_, *live_rows().linear_velocity);
 }
 
-void Part::stand_like(const Part& other) {
-  const btRigidBody& from = *other.rigid_;
-  rigid_->setWorldTransform(from.getWorldTransform());
-  rigid_->setInterpolationWorldTransform(from.getWorldTransform());
-  rigid_->setLinearVelocity(from.getLinearVelocity());
-  rigid_->setAngularVelocity(from.getAngularVelocity());
+Part::Stance Part::stance() const {
+  return {pose(),
+          linear_velocity(),
+          angular_velocity(),
+          rigid_->getWorldTransform(),
+          rigid_->getLinearVelocity(),
+          rigid_->getAngularVelocity()};
+}
+
+void Part::stand(const Stance& stance) {
+  // past the marks: what the store tells of a pose has gone through a quaternion
+  double* const live = body_.store().live_block(id_);
+  put(live + live_rows().position->offset, stance.pose.position);
+  put(live + live_rows().rotation->offset, stance.pose.rotation);
+  put(live + live_rows().linear_velocity->offset, stance.linear_velocity);
+  put(live + live_rows().angular_velocity->offset, stance.angular_velocity);
+  rigid_->setWorldTransform(stance.transform);
+  rigid_->setInterpolationWorldTransform(stance.transform);
+  rigid_->setLinearVelocity(stance.linear);
+  rigid_->setAngularVelocity(stance.angular);
   rigid_->updateInertiaTensor();
 }
 

@@ -43,8 +43,15 @@ class Part {
   Vec3 angular_velocity() const;
   void set_pose(const Pose& pose);
   void set_velocity(const Vec3& linear, const Vec3& angular);
-  /// Bullet's pose and velocity of another part, to the bit.
-  void stand_like(const Part& other);
+  /// Where it is and how it moves, to the bit: for another part that stands in its place.
+  struct Stance {
+    Pose pose;
+    Vec3 linear_velocity, angular_velocity;
+    btTransform transform;
+    btVector3 linear, angular;
+  };
+  Stance stance() const;
+  void stand(const Stance& stance);
   /// Where it was made: reset's goal.
   const Pose& start_pose() const { return start_; }
   void set_start_pose(const Pose& pose) { start_ = pose; }

@@ -91,6 +91,12 @@ std::vector<PlacedShape> Shape::placed() const {
   return {self};
 }
 
+void Shape::become(const Shape& other) {
+  model_ = other.model_;
+  children_ = other.children_;
+  geometry_ = other.geometry_;
+}
+
 std::shared_ptr<const Geometry> Shape::geometry() const {
   if (geometry_ == nullptr) geometry_ = make_geometry(placed(), Inertial{});
   return geometry_;

@@ -32,6 +32,9 @@ class Shape {
   std::size_t child_count() const { return children_.size(); }
   /// Takes the last children away again: what a guarded call that failed had added.
   void keep_children(std::size_t count);
+  const std::vector<PlacedShape>& children() const { return children_; }
+  /// Takes the geometry of another shape, of another world perhaps. Parts made before are not changed.
+  void become(const Shape& other);
   /// As a part of that shape collides, mass spread over its volume. Built at first use.
   std::shared_ptr<const Geometry> geometry() const;
 

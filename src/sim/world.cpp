@@ -80,10 +80,10 @@ void World::clear() {
   }
 }
 
-void World::restart_time() {
-  tick_ = 0;
-  store_.tell(id_, *world_rows().time)[0] = 0;
-  store_.tell(id_, *world_rows().tick)[0] = 0;
+void World::restart_time(std::uint64_t tick, double time) {
+  tick_ = tick;
+  store_.tell(id_, *world_rows().time)[0] = time;
+  store_.tell(id_, *world_rows().tick)[0] = static_cast<double>(tick);
 }
 
 Result<void> World::name_is_free(NodeId group, std::string_view kind, std::string_view name) const {

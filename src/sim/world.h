@@ -40,9 +40,13 @@ class World {
   /// Errors: a taken name, a name that can't be printed.
   Result<Body*> add_body(std::string name);
   Result<Body*> add_body(const std::shared_ptr<const BodyModel>& model, std::string name, const BuildOptions& options);
-  /// At the same place, with all values. Placed (set_pose) before the next step, it never collides with its original.
+  /// At the same place, with all values; of a body of this world or of another. Placed (set_pose) before the next step,
+  /// it never collides with its original.
   Result<Body*> copy_body(const Body& source, std::string name);
   /// In a guarded call it is out of sight at once, and goes when the call has ended well.
+  /// Puts a body like `described` (of another world) in the place of `body`: where that is, with its joints' positions
+  /// and speeds, where the two have the same. What is the same stays to the bit. The start pose is the described one.
+  Body& rebuild_body(Body& body, const Body& described, const std::vector<bool>& joints_start_anew);
   void remove_body(Body& body);
   Body* find_body(std::string_view name) const;
   std::span<const std::unique_ptr<Body>> bodies() const { return bodies_; }
@@ -51,6 +55,13 @@ class World {
   Result<Shape*> add_shape(std::string name, ShapeModel model);
   Shape* find_shape(std::string_view name) const;
   std::span<const std::unique_ptr<Shape>> shapes() const { return shapes_; }
+
+  void remove_shape(Shape& shape);
+  /// The shape of that name as one of another world.
+  NodeId same_shape(const World& other, NodeId shape) const;
+  /// Brings bodies, shapes into this order; those that are not named stand behind, as they stood.
+  void order_bodies(const std::vector<Body*>& first);
+  void order_shapes(const std::vector<Shape*>& first);
 
   double time() const;
   std::uint64_t tick() const { return tick_; }
@@ -67,8 +78,10 @@ class World {
   bool take_reset_request() { return std::exchange(reset_asked_, false); }
   /// Removes every body and shape; the world's own rows return to their defaults.
   void clear();
-  /// Time and ticks from 0.
-  void restart_time();
+  /// Effects without entering Bullet's world: for one that is only described, never stepped.
+  void stand();
+  /// Time and ticks from there on.
+  void restart_time(std::uint64_t tick = 0, double time = 0);
 
   /// Parts with `report_contacts` that began to touch in the last tick, in a fixed order.
   std::span<const ContactEvent> contacts() const { return contacts_.begun(); }

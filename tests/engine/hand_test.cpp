@@ -8,7 +8,9 @@ namespace {
 
 std::vector<std::string> texts(const PerformerHand& hand) {
   std::vector<std::string> list;
-  for (const Message* m : hand.in_order()) list.push_back(text_of(*m));
+  for (const HandStep& step : hand.in_order()) {
+    list.push_back(step.message != nullptr ? text_of(*step.message) : "back " + *step.address);
+  }
   return list;
 }
 
@@ -26,6 +28,24 @@ TEST(PerformerHand, KeepsTheLastForEachAddressAndNames) {
   hand.remember(message("/physics/part/mass", "arm", "tip", 5));
   EXPECT_EQ(texts(hand).back(), "/physics/part/mass arm tip 5");
   EXPECT_EQ(hand.size(), 4U);
+}
+
+TEST(PerformerHand, WhatAReloadGaveBackStandsInTheOrder) {
+  PerformerHand hand;
+  hand.give_back("/physics/sim/gravity");
+  EXPECT_TRUE(texts(hand).empty()) << "nothing was set by hand before";
+  hand.remember(message("/physics/part/mass", 1));
+  hand.give_back("/physics/body/arm/part/tip/mass");
+  hand.remember(message("/physics/part/friction", 2));
+  hand.give_back("/physics/body/arm/part/tip/friction");
+  EXPECT_EQ(texts(hand),
+            (std::vector<std::string>{"/physics/part/mass 1", "back /physics/body/arm/part/tip/mass",
+                                      "/physics/part/friction 2", "back /physics/body/arm/part/tip/friction"}));
+  hand.remember(message("/physics/part/mass", 3));
+  hand.give_back("/physics/body/arm/part/tip/friction");
+  EXPECT_EQ(texts(hand),
+            (std::vector<std::string>{"back /physics/body/arm/part/tip/mass", "/physics/part/friction 2",
+                                      "/physics/part/mass 3", "back /physics/body/arm/part/tip/friction"}));
 }
 
 TEST(PerformerHand, TwoNamesAreNotOneLongName) {

@@ -129,7 +129,7 @@ TEST(Params, Mistakes) {
        "params: 'a': the default 'x' is none of its choices; did you mean 'y'?"},
       {"params { { 'wind', 1 }, { 'Wi_nd', 2 } }",
        "params: 'wind' and 'Wi_nd' are the same name (case and underscores don't count)"},
-      {"params { { 'a', 1, rerun = true } }", "params: 'a': this version does not know rerun yet; leave it out"},
+      {"params { { 'a', 1, rerun = 1 } }", "params: 'a': rerun is true or false, not 1"},
       {"params { { 'a', 0 / 0 } }", nullptr},
       {"params { { 'a', 1 } } params { { 'b', 1 } }", "params is called once, with all parameters of the scene"},
       {"params { { 'wind', 1 } } print(params.win)", "params has no 'win'; did you mean 'wind'?"},

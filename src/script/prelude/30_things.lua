@@ -9,15 +9,24 @@ local classes, by_table, by_ctype = {}, {}, {}
 P.classes = classes
 for i, name in ipairs { "sim", "body", "part", "joint", "motor", "shape" } do
   local class = { name = name, ctype = ffi.typeof(name), getters = {}, setters = {}, methods = {}, rows = {} }
-  class.table = api.class_table(ctx, i - 1)
-  classes[name], by_table[class.table], by_ctype[tonumber(class.ctype)] = class, class, class
+  class.number = i - 1
+  classes[name], by_ctype[tonumber(class.ctype)] = class, class
 end
+-- each store numbers the tables of its classes by itself
+function P.number_classes()
+  for table in pairs(by_table) do by_table[table] = nil end
+  for _, class in pairs(classes) do
+    class.table = api.class_table(ctx, class.number)
+    by_table[class.table] = class
+  end
+end
+P.number_classes()
 
 -- handles: one for each slot, so that a thing is always the same key of a table; names stay for the gone ones
 local handles = {}
 local names = setmetatable({}, { __mode = "k" })
 local owners = setmetatable({}, { __mode = "k" })
-P.names = names
+P.names, P.handles = names, handles
 
 local thing
 local function intern(slot, generation)

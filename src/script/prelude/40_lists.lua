@@ -49,6 +49,25 @@ function P.list_of(owner, kind)
   return entry.list
 end
 
+function P.each_list(f)
+  for kind = 0, #entries do
+    for _, entry in pairs(entries[kind]) do f(entry) end
+  end
+end
+
+-- their handles have other ids now
+function P.lists_moved()
+  for kind = 0, #entries do
+    local moved = {}
+    for _, entry in pairs(entries[kind]) do
+      local list = entry.list
+      entry.generation, entry.version, entry.items = list.generation_, -1, nil
+      if list.slot_ >= 0 then moved[list.slot_] = entry end
+    end
+    entries[kind] = moved
+  end
+end
+
 -- the thing of a name, a number (−1: the last) or the thing itself
 function P.find_in(owner, kind, key)
   if type(key) == "string" then

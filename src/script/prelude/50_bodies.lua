@@ -141,6 +141,10 @@ method(body, "link", function(h, name)
   return entry.handle
 end)
 
+function P.each_link(f)
+  for _, entry in ipairs(links) do f(entry) end
+end
+
 local function link_pose(k)
   local entry = links[k.number_]
   local code = api.link_pose(ctx, k.slot_, k.generation_, entry.name, #entry.name)

@@ -96,8 +96,19 @@ end)
 method("at", function(_, time, f)
   P.want_number(time, "sim:at")
   P.want_function(f, "sim:at")
-  return add_timer(f, { due = time })
+  return add_timer(f, { due = time, fixed = true })
 end)
+
+-- the run becomes the show, whose timers were looked at last at `time`: beats go on, and what was due does not come again
+function P.timers_moved(time)
+  for _, entry in ipairs(timers) do
+    if entry.period then
+      entry.beat = beats(entry, time)
+    elseif entry.fixed and time + kSlack >= entry.due then
+      entry.off = true
+    end
+  end
+end
 
 local timer_methods = {
   cancel = function(handle)

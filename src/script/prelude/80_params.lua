@@ -47,7 +47,9 @@ local function check_spec(spec, i)
   if spec.step ~= nil and P.want_number(spec.step, "params: '" .. name .. "': step") <= 0 then
     fail("params: '%s': step is above 0", name)
   end
-  if spec.rerun ~= nil then fail("params: '%s': this version does not know rerun yet; leave it out", name) end
+  if spec.rerun ~= nil and type(spec.rerun) ~= "boolean" then
+    fail("params: '%s': rerun is true or false, not %s", name, describe(spec.rerun))
+  end
   return name
 end
 
@@ -88,6 +90,7 @@ local function declare_one(spec, i)
   for _, choice in ipairs(choices) do api.param_choice(ctx, choice, #choice) end
   if spec.doc then api.param_doc(ctx, spec.doc, #spec.doc) end
   if spec.step then api.param_step(ctx, spec.step) end
+  if spec.rerun then api.param_rerun(ctx) end
   if spec.unit then P.check(api.param_unit(ctx, spec.unit, #spec.unit)) end
 end
 
@@ -100,6 +103,13 @@ local function declare(_, list)
   class = { name = "params", table = answer.count, getters = {}, setters = {}, methods = {}, rows = {} }
   node = { slot_ = answer.slot, generation_ = answer.generation }
   P.derive(class)
+end
+
+-- the node is another one now
+function P.params_moved()
+  if not node then return end
+  api.params_node(ctx)
+  node.slot_, node.generation_ = answer.slot, answer.generation
 end
 
 local function no_parameter(key)

@@ -99,7 +99,7 @@ function P.make_env()
   add_functions(env)
   env.require = make_require(env)
   env.vec3, env.quat, env.rgb, env.rng = P.vec3, P.make_quat(), P.rgb, P.rng
-  env.sim, env.osc, env.params, env.state = P.sim, P.osc, P.params, {}
+  env.sim, env.osc, env.params, env.state = P.sim, P.osc, P.params, P.first_state()
   return setmetatable(env, {
     __index = function(_, key)
       local hint = P.hint(key, P.sorted_keys(env))
@@ -110,7 +110,8 @@ function P.make_env()
 end
 
 local function compile_and_run(text, name)
-  local chunk, message = P.load(text, "@" .. name, P.make_env())
+  P.env = P.make_env()
+  local chunk, message = P.load(text, "@" .. name, P.env)
   if not chunk then error(message, 0) end
   chunk()
 end

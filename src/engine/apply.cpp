@@ -1,0 +1,215 @@
+// Bringing a difference into a world: shapes, bodies, values, places, order.
+#include "engine/apply.h"
+
+#include <algorithm>
+#include <bit>
+#include <string>
+
+#include "base/check.h"
+
+namespace limber {
+
+namespace {
+
+template <class T>
+T* living(const World& world, NodeId id) {
+  const Store& store = world.store();
+  if (!store.alive(id) || &store.table(id) != &T::table()) return nullptr;
+  return static_cast<T*>(store.thing(id));
+}
+
+std::uint64_t bit_of(std::string_view row) { return std::uint64_t{1} << Part::table().at(row).index; }
+
+// values of a body's things before it is made anew, by kind and name
+class Keepsakes {
+ public:
+  explicit Keepsakes(const Body& body) {
+    keep(body, body.id(), "");
+    for (const auto& part : body.parts()) keep(body, part->id(), part->name());
+    for (const auto& joint : body.joints()) keep(body, joint->id(), joint->name());
+    for (const auto& motor : body.motors()) keep(body, motor->id(), motor->name());
+  }
+
+  // rows of `leave` and velocities, which go with the posture, are left alone
+  void give_to(Store& store, NodeId id, std::string_view name, std::uint64_t leave) const {
+    const Table& table = store.table(id);
+    const auto found =
+        std::find_if(all_.begin(), all_.end(), [&](const Keepsake& k) { return k.table == &table && k.name == name; });
+    if (found == all_.end()) return;
+    if (&table == &Part::table()) leave |= bit_of("linear_velocity") | bit_of("angular_velocity");
+    const std::uint64_t rows = described_rows(table) & ~leave;
+    for (const Row& row : table.rows()) {
+      if ((rows >> row.index & 1u) == 0) continue;
+      const double* const was = (row.live ? found->live : found->kept).data() + row.offset;
+      if (std::equal(was, was + row.width, std::as_const(store).values(id, row))) continue;
+      (void)store.set(id, row, {was, row.width});  // a mass that can't be set any more stays as it was made
+    }
+  }
+
+ private:
+  struct Keepsake {
+    const Table* table;
+    std::string name;
+    std::vector<double> kept, live;
+  };
+  void keep(const Body& body, NodeId id, const std::string& name) {
+    const Store& store = body.store();
+    const Table& table = store.table(id);
+    const double* const kept = store.kept_block(id);
+    const double* const live = store.live_block(id);
+    all_.push_back({&table, name, {kept, kept + table.kept_width()}, {live, live + table.live_width()}});
+  }
+
+  std::vector<Keepsake> all_;
+};
+
+class Applying {
+ public:
+  explicit Applying(const Application& a) : a_(a), store_(a.world.store()) {}
+
+  void run(LiveThings& things) {
+    set_rows(a_.draft.id(), a_.world.id(), a_.difference.world);
+    remove_bodies(things);
+    shapes(things);
+    bodies(things);
+    for (const std::size_t gone : a_.difference.gone_shapes) {
+      if (Shape* const shape = living<Shape>(a_.world, things.shapes[gone])) a_.world.remove_shape(*shape);
+    }
+    a_.world.order_shapes(shapes_);
+    a_.world.order_bodies(bodies_);
+    things = {};
+    for (const Shape* shape : shapes_) things.shapes.push_back(shape->id());
+    for (const Body* body : bodies_) things.bodies.push_back(body->id());
+  }
+
+ private:
+  void set_rows(NodeId from, NodeId to, std::uint64_t rows) {
+    const Store& theirs = a_.draft.store();
+    for (; rows != 0; rows &= rows - 1) {
+      const Row& row = store_.table(to).row(static_cast<std::uint32_t>(std::countr_zero(rows)));
+      const double* const values = theirs.values(from, row);
+      a_.on_set(to, row);
+      if (std::equal(values, values + row.width, std::as_const(store_).values(to, row))) continue;
+      const Result<SetOutcome> set = store_.set(to, row, {values, row.width});
+      LIMBER_CHECK(set.ok());
+    }
+  }
+
+  void remove_bodies(const LiveThings& things) {
+    for (const std::size_t gone : a_.difference.gone_bodies) {
+      if (Body* const body = living<Body>(a_.world, things.bodies[gone])) a_.world.remove_body(*body);
+    }
+  }
+
+  void shapes(const LiveThings& things) {
+    auto next = a_.difference.shapes.begin();
+    for (std::size_t i = 0; i < a_.now.shapes.size(); i++) {
+      const std::optional<std::size_t> before = a_.difference.shapes_before[i];
+      const Shape& described = *a_.draft.shapes()[i];
+      Shape* shape = before ? living<Shape>(a_.world, things.shapes[*before]) : nullptr;
+      const bool differs = next != a_.difference.shapes.end() && next->now == i;
+      if (shape == nullptr) {
+        shape = a_.world.find_shape(described.name());
+        if (shape == nullptr) shape = *a_.world.add_shape(described.name(), described.model());
+        shape->become(described);
+        set_rows(described.id(), shape->id(), said_rows(a_.now.shapes[i]->rows));
+      } else if (differs) {
+        if (next->geometry) shape->become(described);
+        set_rows(described.id(), shape->id(), next->rows);
+      }
+      if (differs) ++next;
+      shapes_.push_back(shape);
+    }
+  }
+
+  void bodies(const LiveThings& things) {
+    auto next = a_.difference.bodies.begin();
+    for (std::size_t i = 0; i < a_.now.bodies.size(); i++) {
+      const std::optional<std::size_t> before = a_.difference.bodies_before[i];
+      const bool differs = next != a_.difference.bodies.end() && next->now == i;
+      Body* body = before ? living<Body>(a_.world, things.bodies[*before]) : nullptr;
+      if (body == nullptr) {
+        body = newcomer(i);
+      } else if (differs) {
+        body = &changed(*body, *next);
+      }
+      if (differs) ++next;
+      bodies_.push_back(body);
+    }
+  }
+
+  // new, or back after it was removed, or one of the performance that the scene now describes
+  Body* newcomer(std::size_t i) {
+    const Body& described = *a_.draft.bodies()[i];
+    Body* const stranger = a_.world.find_body(described.name());
+    if (stranger == nullptr) return *a_.world.copy_body(described, described.name());
+    BodyDifference difference = compare_stranger(describe_body(*stranger), a_.now.bodies[i]);
+    difference.now = i;
+    return &changed(*stranger, difference);
+  }
+
+  Body& changed(Body& body, const BodyDifference& d) {
+    const Body& described = *a_.draft.bodies()[d.now];
+    Body& live = d.anew ? made_anew(body, described, d) : body;
+    if (!d.anew && d.start) live.take_start_pose(described);
+    set_rows(described.id(), live.id(), d.rows);
+    for (std::size_t i = 0; i < d.parts.size(); i++)
+      set_rows(described.parts()[i]->id(), live.parts()[i]->id(), d.parts[i]);
+    for (std::size_t i = 0; i < d.joints.size(); i++)
+      set_rows(described.joints()[i]->id(), live.joints()[i]->id(), d.joints[i]);
+    for (std::size_t i = 0; i < d.motors.size(); i++)
+      set_rows(described.motors()[i]->id(), live.motors()[i]->id(), d.motors[i]);
+    move(live, described, d);
+    return live;
+  }
+
+  Body& made_anew(Body& body, const Body& described, const BodyDifference& d) {
+    const Keepsakes keepsakes(body);
+    Body& live = a_.world.rebuild_body(body, described, d.joints_start_anew);
+    keepsakes.give_to(store_, live.id(), "", d.rows);
+    for (std::size_t i = 0; i < d.parts.size(); i++)
+      keepsakes.give_to(store_, live.parts()[i]->id(), live.parts()[i]->name(), d.parts[i]);
+    for (std::size_t i = 0; i < d.joints.size(); i++)
+      keepsakes.give_to(store_, live.joints()[i]->id(), live.joints()[i]->name(), d.joints[i]);
+    for (std::size_t i = 0; i < d.motors.size(); i++)
+      keepsakes.give_to(store_, live.motors()[i]->id(), live.motors()[i]->name(), d.motors[i]);
+    return live;
+  }
+
+  static void move(Body& live, const Body& described, const BodyDifference& d) {
+    const Pose before = live.pose();
+    const Pose wanted = described.pose();
+    const Pose to{d.position ? wanted.position : before.position, d.rotation ? wanted.rotation : before.rotation};
+    if (live.parts().empty()) return live.set_pose(to);
+    if (d.position || d.rotation) {
+      const Pose moved = to * before.inverse();
+      const std::size_t root_tree = live.trees().front();
+      const auto along = [&](std::size_t first) { live.move_tree(first, moved * live.parts()[first]->pose()); };
+      if (root_tree == 0) {
+        live.move_tree(0, to);
+      } else {
+        along(root_tree);
+      }
+      for (const std::size_t first : d.trees_along) along(first);
+    }
+    for (const std::size_t first : d.trees_placed) live.move_tree(first, described.parts()[first]->pose());
+  }
+
+  const Application& a_;
+  Store& store_;
+  std::vector<Shape*> shapes_;
+  std::vector<Body*> bodies_;
+};
+
+}  // namespace
+
+LiveThings things_of(const World& world) {
+  LiveThings things;
+  for (const auto& shape : world.shapes()) things.shapes.push_back(shape->id());
+  for (const auto& body : world.bodies()) things.bodies.push_back(body->id());
+  return things;
+}
+
+void apply(const Application& application, LiveThings& things) { Applying(application).run(things); }
+
+}  // namespace limber

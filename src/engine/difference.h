@@ -1,0 +1,58 @@
+// Difference: what one description says otherwise than the one before. The one rule: what is said otherwise is applied;
+// what is said as before stays as the performer's hand left it; what is no longer said returns to its default. [any]
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "engine/description.h"
+
+namespace limber {
+
+/// A body that is new, or that the two descriptions tell differently. Rows stand as a bit a row.
+struct BodyDifference {
+  std::size_t now = 0;                ///< In the description now.
+  std::optional<std::size_t> before;  ///< In the one before.
+  bool anew = false;                  ///< Its making is another one.
+  std::uint64_t rows = 0;             ///< To be set, of the body's node.
+  std::vector<std::uint64_t> parts;   ///< To be set, for each of its parts, joints, motors now.
+  std::vector<std::uint64_t> joints;
+  std::vector<std::uint64_t> motors;
+  bool position = false;  ///< The root is to go where it is said now.
+  bool rotation = false;
+  std::vector<std::size_t> trees_along;   ///< First parts of other trees that go with the root.
+  std::vector<std::size_t> trees_placed;  ///< And of those that go where they are said now.
+  bool start = false;                     ///< Start poses are others.
+  std::vector<bool> joints_start_anew;    ///< Joints whose start is said otherwise, when the body is made anew.
+
+  bool empty() const;
+};
+
+struct ShapeDifference {
+  std::size_t now = 0;
+  bool geometry = false;
+  std::uint64_t rows = 0;
+};
+
+struct Difference {
+  std::uint64_t world = 0;                                ///< Rows of the world to be set.
+  std::vector<std::optional<std::size_t>> shapes_before;  ///< For each shape now, which one it was.
+  std::vector<std::optional<std::size_t>> bodies_before;
+  std::vector<ShapeDifference> shapes;  ///< Those that were there and are told differently.
+  std::vector<BodyDifference> bodies;   ///< The same, of bodies.
+  std::vector<std::size_t> gone_shapes;
+  std::vector<std::size_t> gone_bodies;
+
+  bool empty() const;
+};
+
+Difference compare(const Description& before, const Description& now);
+/// What `now` says of a body that stands there without having been described, as `stands`: what is said counts, the
+/// rest stays.
+BodyDifference compare_stranger(const BodyDescription& stands, const BodyDescription& now);
+
+/// Rows that differ in value or in whether they were said.
+std::uint64_t changed_rows(const SaidRows& before, const SaidRows& now);
+
+}  // namespace limber

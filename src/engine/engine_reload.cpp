@@ -1,0 +1,56 @@
+// Engine: the scene's runs beside the show.
+#include <utility>
+
+#include "engine/draft.h"
+#include "engine/engine.h"
+
+namespace limber {
+
+bool Engine::between_ticks(const std::function<void()>& work) {
+  return requests_.ask(work, [this] {
+    commands_wait_.store(true, std::memory_order_relaxed);
+    { const std::scoped_lock lock(wake_mutex_); }
+    wake_.notify_all();
+  });
+}
+
+void Engine::reload(bool again) {
+  Reload::End end = Reload::End::outdated;
+  while (end == Reload::End::outdated) {
+    DraftOrder order;
+    if (!between_ticks([&] { order = reload_.order(*stage_, again); })) return;
+    Draft draft(std::move(order), *this);
+    if (!between_ticks([&] { end = take(draft); })) return;
+  }
+}
+
+Reload::End Engine::reload_now(bool again) {
+  Draft draft(reload_.order(*stage_, again), *this);
+  return take(draft);
+}
+
+Reload::End Engine::take(Draft& draft) {
+  const bool is_start = stage_->scene == nullptr;
+  const Reload::End end = reload_.take(draft, *stage_);
+  if (end != Reload::End::applied) return end;
+  static const Row& seed = World::table().at("seed");
+  if ((draft.difference().world >> seed.index & 1u) != 0) scene_seed_ = stage_->world.seed();
+  if (!is_start) return end;
+  scene_seed_ = stage_->world.seed();
+  for (const Message& message : options_.sets) {
+    if (stage_->dispatch.execute(message).kind == Outcome::Kind::applied) hand_.remember(message);
+  }
+  begin_show();
+  return end;
+}
+
+void Engine::rerun() {
+  if (!reload_.take_rerun(*stage_)) return;
+  if (link_.rerun_scene && !options_.fast) {
+    link_.rerun_scene();
+  } else {
+    reload_now(true);
+  }
+}
+
+}  // namespace limber

@@ -1,0 +1,91 @@
+// From an order to a draft to the show.
+#include "engine/reload.h"
+
+#include <bit>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "base/log.h"
+
+namespace limber {
+
+Reload::Reload(std::string file, ScriptHost& host, PerformerHand& hand)
+    : file_(std::move(file)), host_(host), hand_(hand) {}
+
+void Reload::begin(const Stage& stage, const SceneOptions& options) {
+  options_ = options;
+  description_ = std::make_shared<const Description>(describe(stage.world));
+  things_ = things_of(stage.world);
+  sources_ = stage.scene == nullptr ? nullptr : stage.scene->sources();
+  ran_with_.clear();
+  if (stage.scene != nullptr) stage.scene->rerun_values(ran_with_);
+  keep_files({});
+}
+
+DraftOrder Reload::order(const Stage& stage, bool again) {
+  DraftOrder order{file_, options_, {}, description_};
+  if (stage.scene == nullptr) return order;
+  order.inputs = stage.scene->inputs();
+  if (again) order.inputs.sources = sources_;
+  stage.scene->rerun_values(ran_with_);
+  return order;
+}
+
+bool Reload::take_rerun(const Stage& stage) {
+  if (stage.scene == nullptr) return false;
+  stage.scene->rerun_values(values_);
+  if (values_ == ran_with_) return false;
+  ran_with_ = values_;
+  return true;
+}
+
+Reload::End Reload::take(Draft& draft, Stage& stage) {
+  if (draft.order().before != description_) return End::outdated;
+  if (!draft.ran()) {
+    keep_files(draft.files());
+    host_.script_error(draft.fault().file, draft.fault().line, draft.ran().error());
+    return End::failed;
+  }
+  Store& store = stage.store;
+  const auto set_by_scene = [&](NodeId id, const Row& row) {
+    if (hand_.size() > 0) hand_.give_back(fmt::format("{}/{}", store.path(id), row.name));
+  };
+  apply({stage.world, draft.world(), *description_, *draft.description(), draft.difference(), set_by_scene}, things_);
+  const auto live_id = [&](NodeId id) { return draft.live_id(id, stage.world, things_.shapes, things_.bodies); };
+  std::unique_ptr<Scene>& scene = draft.scene();
+  scene->rerun_values(ran_with_);
+  std::uint64_t others = scene->become_live(stage.world, live_id, stage.scene.get());
+  for (const NodeId params = scene->params(); others != 0; others &= others - 1)
+    set_by_scene(params, store.table(params).row(static_cast<std::uint32_t>(std::countr_zero(others))));
+  std::swap(stage.scene, scene);
+  description_ = draft.description();
+  sources_ = stage.scene->sources();
+  const bool from_disk = draft.order().inputs.sources == nullptr;
+  if (from_disk) {
+    keep_files({});
+    say_mended();
+  }
+  return End::applied;
+}
+
+void Reload::say_mended() {
+  for (const std::string& file : std::exchange(faulty_, {})) host_.script_error(file, 0, "");
+}
+
+void Reload::keep_files(std::vector<SourceFile> files) {
+  if (sources_ != nullptr) {
+    const std::vector<SourceFile> good = sources_->files();
+    files.insert(files.end(), good.begin(), good.end());
+  }
+  if (files.empty() && !file_.empty()) files.push_back({file_, {}});
+  const std::scoped_lock lock(files_mutex_);
+  files_ = std::move(files);
+}
+
+std::vector<SourceFile> Reload::files() const {
+  const std::scoped_lock lock(files_mutex_);
+  return files_;
+}
+
+}  // namespace limber

@@ -1,0 +1,52 @@
+// One piece of work at a time; the lock is never held while it is done.
+#include "engine/requests.h"
+
+namespace limber {
+
+bool Requests::ask(const std::function<void()>& work, const std::function<void()>& wake) {
+  std::unique_lock lock(mutex_);
+  changed_.wait(lock, [this] { return work_ == nullptr || closed_; });
+  if (closed_) return false;
+  work_ = &work;
+  waiting_.store(true, std::memory_order_release);
+  lock.unlock();
+  wake();
+  lock.lock();
+  changed_.wait(lock, [&] { return work_ != &work || closed_; });
+  if (work_ != &work) return true;
+  work_ = nullptr;
+  waiting_.store(false, std::memory_order_release);
+  return false;
+}
+
+void Requests::serve() {
+  if (!waiting()) return;
+  const std::function<void()>* work = nullptr;
+  {
+    const std::scoped_lock lock(mutex_);
+    work = work_;
+  }
+  if (work == nullptr) return;
+  (*work)();
+  {
+    const std::scoped_lock lock(mutex_);
+    work_ = nullptr;
+    waiting_.store(false, std::memory_order_release);
+  }
+  changed_.notify_all();
+}
+
+void Requests::open() {
+  const std::scoped_lock lock(mutex_);
+  closed_ = false;
+}
+
+void Requests::close() {
+  {
+    const std::scoped_lock lock(mutex_);
+    closed_ = true;
+  }
+  changed_.notify_all();
+}
+
+}  // namespace limber

@@ -1,0 +1,58 @@
+// Sources: what a run of a scene reads (where files are, scripts' texts, models, meshes), kept so that the scene can be
+// run again without the disk, and so that somebody can watch the files. [any]
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "model/model_library.h"
+#include "script/files.h"
+
+namespace limber {
+
+/// A file that a run depends on. It may not exist: a place where one was looked for.
+struct SourceFile {
+  std::string path;
+  std::optional<std::uint64_t> content;  ///< hash_bytes of what was read, where that is known.
+};
+
+class Sources {
+ public:
+  /// `again`: what an earlier run has read is taken from there, not from the disk.
+  explicit Sources(std::shared_ptr<const Sources> again = nullptr) : again_(std::move(again)) {}
+
+  /// As ScriptFiles finds them.
+  Result<std::string> find(const ScriptFiles& files, std::string_view name);
+  Result<std::string> find_lib(const ScriptFiles& files, std::string_view name);
+  /// A script's text.
+  Result<std::string> text(const std::string& path);
+  Result<std::shared_ptr<const BodyModel>> model(const std::string& path, const ImportOptions& options);
+  /// Whether this run has loaded that URDF file, with whatever options.
+  bool has_model(const std::string& path) const { return model_files_.contains(path); }
+  Result<std::shared_ptr<const MeshModel>> mesh(const std::string& path, const Vec3& scale);
+
+  /// The run is over: what it did not read of the earlier run's is let go.
+  void close() { again_ = nullptr; }
+  /// All files that were read, or looked for in vain.
+  std::vector<SourceFile> files() const;
+
+ private:
+  template <class T>
+  const T* known(std::map<std::string, T> Sources::*list, const std::string& key) const;
+
+  std::shared_ptr<const Sources> again_;
+  std::map<std::string, std::string> found_;
+  std::map<std::string, std::string> texts_;
+  std::map<std::string, std::uint64_t> contents_;  // by path; 0: not known
+  std::map<std::string, std::shared_ptr<const BodyModel>> models_;
+  std::map<std::string, bool> model_files_;
+  std::map<std::string, std::shared_ptr<const MeshModel>> meshes_;
+  std::vector<std::string> passed_;
+};
+
+}  // namespace limber

@@ -1,0 +1,64 @@
+// World: what a reload changes in it: shapes that go, bodies that are built anew, the order of both.
+#include <algorithm>
+
+#include "base/check.h"
+#include "sim/posture.h"
+#include "sim/world.h"
+
+namespace limber {
+
+namespace {
+
+// the named ones first, in their order; the others behind, as they stood
+template <class T>
+void order(Store& store, NodeId group, std::vector<std::unique_ptr<T>>& list, const std::vector<T*>& first) {
+  const auto in_place = [](const std::unique_ptr<T>& is, const T* wanted) { return is.get() == wanted; };
+  if (first.size() <= list.size() &&
+      std::equal(first.begin(), first.end(), list.begin(), [&](const T* a, const auto& b) { return in_place(b, a); })) {
+    return;
+  }
+  std::vector<NodeId> ids;
+  std::vector<std::uint32_t> place(store.view()->slot_count, static_cast<std::uint32_t>(first.size()));
+  for (const T* thing : first) {
+    place[thing->id().slot] = static_cast<std::uint32_t>(ids.size());
+    ids.push_back(thing->id());
+  }
+  std::stable_sort(list.begin(), list.end(),
+                   [&](const auto& a, const auto& b) { return place[a->id().slot] < place[b->id().slot]; });
+  store.order_children(group, ids);
+}
+
+}  // namespace
+
+void World::stand() {
+  store_.apply_marks();
+  for (const auto& body : bodies_) body->settle_joints();
+}
+
+Body& World::rebuild_body(Body& body, const Body& described, const std::vector<bool>& joints_start_anew) {
+  const Posture posture(body);
+  remove_body(body);
+  const Result<Body*> made = copy_body(described, described.name());
+  LIMBER_CHECK(made.ok());
+  Body& fresh = **made;
+  fresh.take_start_pose(described);
+  fresh.fresh_ = false;
+  posture.give_to(fresh, joints_start_anew);
+  return fresh;
+}
+
+void World::remove_shape(Shape& shape) {
+  std::erase_if(shapes_, [&](const std::unique_ptr<Shape>& s) { return s.get() == &shape; });
+}
+
+NodeId World::same_shape(const World& other, NodeId shape) const {
+  if (&other == this || !other.store_.alive(shape)) return shape;
+  const Shape* const found = find_shape(other.store_.name(shape));
+  return found == nullptr ? NodeId{} : found->id();
+}
+
+void World::order_bodies(const std::vector<Body*>& first) { order(store_, body_group_, bodies_, first); }
+
+void World::order_shapes(const std::vector<Shape*>& first) { order(store_, shape_group_, shapes_, first); }
+
+}  // namespace limber

@@ -1,0 +1,84 @@
+// A show in a folder of its own that is edited while it plays: save() is what saving the scene's file comes to.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "base/log.h"
+#include "engine/show.h"
+
+namespace limber::engine_test {
+
+/// A folder with scripts/, that goes when the test is over.
+class ShowFolder {
+ public:
+  ShowFolder() {
+    static std::atomic<int> count{0};
+    folder_ =
+        std::filesystem::path(::testing::TempDir()) / fmt::format("limber_show_{}_{}", ::getpid(), count.fetch_add(1));
+    std::filesystem::create_directories(folder_ / "scripts" / "lib");
+  }
+  ~ShowFolder() {
+    std::error_code ignored;
+    std::filesystem::remove_all(folder_, ignored);
+  }
+  ShowFolder(const ShowFolder&) = delete;
+  ShowFolder& operator=(const ShowFolder&) = delete;
+
+  std::string path(const std::string& name) const { return (folder_ / name).string(); }
+  void write(const std::string& name, const std::string& text) const {
+    std::filesystem::create_directories((folder_ / name).parent_path());
+    std::ofstream(folder_ / name, std::ios::binary) << text;
+  }
+  void remove(const std::string& name) const { std::filesystem::remove(folder_ / name); }
+
+ private:
+  std::filesystem::path folder_;
+};
+
+struct Edited {
+  ShowFolder folder;
+  std::string text;
+  std::optional<Show> playing;
+
+  explicit Edited(std::string scene) : Edited(std::move(scene), {}) {}
+  /// `files`: name and text, written before the scene is run.
+  Edited(std::string scene, const std::vector<std::pair<std::string, std::string>>& files) : text(std::move(scene)) {
+    log_to_stderr(false);
+    for (const auto& [name, file_text] : files) folder.write(name, file_text);
+    folder.write("scripts/scene.lua", text);
+    playing.emplace(folder.path("scripts/scene.lua"));
+  }
+
+  Show& show() { return *playing; }
+  World& world() { return show().engine.world(); }
+  Body& body(const std::string& name) { return *world().find_body(name); }
+  Part& part(const std::string& body_name, const std::string& name) { return *body(body_name).find_part(name); }
+
+  Reload::End save(const std::string& scene) {
+    text = scene;
+    folder.write("scripts/scene.lua", text);
+    return show().engine.reload_now();
+  }
+  /// Saves the scene with one piece of its text replaced.
+  Reload::End edit(const std::string& from, const std::string& to) {
+    const std::size_t at = text.find(from);
+    if (at == std::string::npos) ADD_FAILURE() << "'" << from << "' does not stand in the scene";
+    std::string edited = text;
+    return save(edited.replace(at, from.size(), to));
+  }
+};
+
+/// Where a part is and how it moves, as bits.
+inline std::vector<double> motion_of(const Part& part) {
+  const Part::Stance s = part.stance();
+  std::vector<double> all;
+  for (int i = 0; i < 3; i++) {
+    for (const double v : {s.pose.position[i], s.linear_velocity[i], s.angular_velocity[i]}) all.push_back(v);
+  }
+  for (const double v : {s.pose.rotation.x, s.pose.rotation.y, s.pose.rotation.z, s.pose.rotation.w}) all.push_back(v);
+  return all;
+}
+
+}  // namespace limber::engine_test
