@@ -15,6 +15,9 @@
 
 namespace limber {
 
+/// Everything by which two imports of a file differ, in one text. [any]
+std::string options_key(const ImportOptions& options);
+
 /// Models by file and options. A model is imported anew when its URDF or one of its meshes has changed on disk; who
 /// holds the old one keeps it. [any]
 class ModelLibrary {
