@@ -60,6 +60,9 @@ struct ScriptContext {
   Message message;
   std::vector<Row> param_rows;
 
+  // what the run loaded, by what it asked for: callbacks may have it again, since they must not wait for a disk
+  std::map<std::string, std::shared_ptr<const BodyModel>> loaded_models;
+  std::map<std::string, std::shared_ptr<const MeshModel>> loaded_meshes;
   OscPlan plan;
   Origin sender;  ///< Of the message that is handled now.
   bool handling_message = false;

@@ -226,29 +226,34 @@ void Guard::take_fault(int status, int function) {
     lua_rawgeti(L, LUA_REGISTRYINDEX, stopped_fault_);
     lua_pcall(L, 0, 1, 0);
   }
+  const auto text_at_top = [&] {
+    std::size_t length = 0;
+    const char* const text = lua_tolstring(L, -1, &length);
+    return text == nullptr ? std::string() : std::string(text, length);
+  };
   if (lua_istable(L, -1)) {
     const int table = lua_gettop(L);
-    const auto text_of = [&](const char* key) {
-      lua_getfield(L, table, key);
-      std::size_t length = 0;
-      const char* text = lua_tolstring(L, -1, &length);
-      return text == nullptr ? std::string() : std::string(text, length);
-    };
-    fault_.file = text_of("file");
-    fault_.text = text_of("text");
     lua_getfield(L, table, "line");
     fault_.line = static_cast<int>(lua_tointeger(L, -1));
-    return;
+    lua_getfield(L, table, "file");
+    fault_.file = text_at_top();
+    lua_getfield(L, table, "text");
   }
-  // LuaJIT found no room for the request, or none to tell of the error: it gives no place then
-  const char* const text = lua_tostring(L, -1);
-  const std::string what = text == nullptr ? "an error without text" : text;
+  fault_.text = text_at_top();
+  if (fault_.text.empty()) fault_.text = "an error without text";
+  if (fault_.line == 0) place_at_function(function);
+}
+
+// A function that ended in a call of ours has left the stack, and LuaJIT tells no place when it finds no room: then it
+// is where the called function begins.
+void Guard::place_at_function(int function) {
   lua_Debug at{};
-  lua_pushvalue(L, function);
-  lua_getinfo(L, ">S", &at);
+  lua_pushvalue(state_, function);
+  lua_getinfo(state_, ">S", &at);
+  if (at.source[0] != '@') return;
+  fault_.file = at.source + 1;
   fault_.line = at.linedefined;
-  fault_.file = at.source[0] == '@' ? at.source + 1 : at.source;
-  fault_.text = fmt::format("{}:{}: {} (in the function that begins here)", fault_.file, fault_.line, what);
+  fault_.text = fmt::format("{}:{}: {}", fault_.file, fault_.line, fault_.text);
 }
 
 }  // namespace limber

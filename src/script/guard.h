@@ -73,6 +73,7 @@ class Guard {
   void stop(Reason reason);
   void heal();
   void take_fault(int status, int function);
+  void place_at_function(int function);
   void note_place(lua_State* state);
   bool place_of(lua_State* state);
   static void on_hook(lua_State* state, lua_Debug* at);

@@ -1,6 +1,8 @@
 // The counting allocator around LuaJIT's own.
 #include "script/memory.h"
 
+#include <algorithm>
+
 #include <lua.hpp>
 
 namespace limber {
@@ -9,10 +11,19 @@ namespace {
 
 constexpr std::size_t kMegabyte = std::size_t{1} << 20u;
 constexpr std::size_t kLarge = 16 * kMegabyte;       // one such request stops the script that makes it
-constexpr std::size_t kImpossible = 64 * kMegabyte;  // one such request is refused
+constexpr std::size_t kImpossible = 32 * kMegabyte;  // one such request is refused
 constexpr std::size_t kAgain = kMegabyte / 4;
-// what a call may add when others have filled the memory before it
+// What a call may add when the memory is full: less and less the more is held beyond the cap, so that the one who takes
+// most is stopped first; nothing at three times the cap.
 constexpr std::size_t kHeadroom = kMegabyte;
+constexpr std::size_t kLeast = 4096;
+
+std::size_t headroom(std::size_t used, std::size_t cap) {
+  if (used <= cap) return kHeadroom;
+  if (used > 3 * cap) return 0;
+  const double beyond = static_cast<double>(used - cap) / static_cast<double>(cap);
+  return beyond < 1 ? std::max(kLeast, static_cast<std::size_t>(kHeadroom * (1 - beyond))) : kLeast;
+}
 
 }  // namespace
 
@@ -27,11 +38,7 @@ void Memory::detach(lua_State* state) { lua_setallocf(state, inner_, inner_self_
 
 void Memory::begin_call() {
   in_call_ = true;
-  if (used_ <= cap_) {
-    alarm_ = cap_;
-  } else {
-    alarm_ = used_ + (used_ <= cap_ + cap_ / 2 ? kHeadroom : 0);
-  }
+  alarm_ = std::max(cap_, used_ + headroom(used_, cap_));
 }
 
 void* Memory::allocate(void* self, void* block, std::size_t before, std::size_t after) {

@@ -55,7 +55,6 @@ Result<std::string> Sources::text(const std::string& path) {
 
 Result<std::shared_ptr<const BodyModel>> Sources::model(const std::string& path, const ImportOptions& options) {
   const std::string key = model_key(path, options);
-  model_files_[path] = true;
   contents_.try_emplace(path, 0);  // one that can't be read is to be watched too
   if (const auto* before = known(&Sources::models_, key)) return models_[key] = *before;
   Result<std::shared_ptr<const BodyModel>> model = models().load_urdf(path, options);

@@ -82,7 +82,15 @@ void write_inputs(const Folder& folder) {
   folder.file("typo.lua", "sim.gravty = vec3(0, 0, 0)\n");
   folder.file("erring.lua", "sim:on_step(function() error('oh') end)\n");
   folder.file("endless.lua", "while true do end\n");
-  folder.file("stuck.lua", "sim:on_step(function() warn('round and round') while true do end end)\n");
+  folder.file("heavy.lua",
+              "sim.substeps, sim.solver_iterations = 1000, 10000\n"
+              "local ball = sim:add_sphere_shape('ball', 0.1)\n"
+              "for i = 1, 200 do\n"
+              "  local body = sim:add_body('pair' .. i)\n"
+              "  local one = body:add_part('one', ball, { position = vec3(i, 0, 0) })\n"
+              "  body:add_joint('bar', one, body:add_part('two', ball, { position = vec3(i, 0, 1) }))\n"
+              "end\n"
+              "sim:on_step(function() warn('round and round') end)\n");
   folder.file("broken.urdf", "<robot name='r'><link name='a'>");
 }
 

@@ -20,12 +20,11 @@ function extra.noise(x, y, z)
   return api.noise(ctx, x, y or 0, z or 0)
 end
 function extra.random(low, high)
-  local u = api.random_uniform(ctx)
-  if low == nil then return u end
+  if low == nil then return api.random_uniform(ctx) end
   if high == nil then low, high = 1, low end
   low, high = math.floor(want_number(low, "math.random")), math.floor(want_number(high, "math.random"))
   if low > high then fail("math.random: nothing lies between %d and %d", low, high) end
-  return low + math.floor(u * (high - low + 1))
+  return low + math.floor(api.random_uniform(ctx) * (high - low + 1))
 end
 
 -- red, green, blue to hue, saturation, brightness, each 0 .. 1

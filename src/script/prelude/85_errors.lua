@@ -78,7 +78,7 @@ local function fault_of(file, line, message, trace)
     if source then text = format("%s\n  %d | %s", text, line, shortened(source, 200)) end
   end
   if #trace > 0 then text = text .. "\nstack traceback:\n" .. table.concat(trace, "\n") end
-  return { file = file or P.main or "", line = line or 0, text = text }
+  return { file = file or P.main or "", line = line or 0, text = text }  -- 0: the guard knows where it began
 end
 
 -- the message handler of every guarded call; what is thrown may be anything, and its __tostring is never called

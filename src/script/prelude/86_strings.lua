@@ -135,7 +135,7 @@ local function replaced(kind, replacement, text)
   local start, stop = match.start, match["end"]  -- what is called may search itself
   local value
   if kind == "table" then
-    value = replacement[(whole_or_captures(text))]
+    value = replacement[match.count == 0 and sub(text, start + 1, stop) or capture(text, 0)]
   else
     value = replacement(whole_or_captures(text))
   end
