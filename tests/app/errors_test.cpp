@@ -85,10 +85,12 @@ void write_inputs(const Folder& folder) {
   folder.file("heavy.lua",
               "sim.substeps, sim.solver_iterations = 1000, 10000\n"
               "local ball = sim:add_sphere_shape('ball', 0.1)\n"
-              "for i = 1, 200 do\n"
-              "  local body = sim:add_body('pair' .. i)\n"
-              "  local one = body:add_part('one', ball, { position = vec3(i, 0, 0) })\n"
-              "  body:add_joint('bar', one, body:add_part('two', ball, { position = vec3(i, 0, 1) }))\n"
+              "local chain = sim:add_body('chain')\n"
+              "local before = chain:add_part('0', ball, { mass = 0 })\n"
+              "for i = 1, 300 do\n"
+              "  local part = chain:add_part(tostring(i), ball, { position = vec3(i, 0, 0) })\n"
+              "  chain:add_joint(tostring(i), before, part, { position = vec3(i - 0.5, 0, 0), axis = vec3(0, 1, 0) })\n"
+              "  before = part\n"
               "end\n"
               "sim:on_step(function() warn('round and round') end)\n");
   folder.file("broken.urdf", "<robot name='r'><link name='a'>");
