@@ -79,6 +79,7 @@ class Engine : private ScriptHost {
   void reset();
   void drain();
   void execute(Message& message, const Origin& origin);
+  void evaluate(const Evaluate& wish);
   void refuse(std::string_view address, const Origin& origin, std::string_view error);
   void call_handlers();
   void publish();

@@ -54,6 +54,10 @@ void Scene::collect_garbage() { vm_->collect_garbage(); }
 
 std::uint64_t Scene::state_hash(std::uint64_t start) const { return context_->hash(start); }
 
+Evaluation Scene::evaluate(std::string_view text) { return vm_->ask("evaluate", text); }
+
+Evaluation Scene::complete(std::string_view text) { return vm_->ask("complete", text); }
+
 std::string Scene::names() { return vm_->names(); }
 
 const std::string& Scene::show_folder() const { return context_->files.show_folder(); }

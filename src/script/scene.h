@@ -4,7 +4,9 @@
 #include <cstdint>
 #include <memory>
 #include <string>
+#include <string_view>
 
+#include "base/evaluation.h"
 #include "base/message.h"
 #include "base/result.h"
 #include "script/host.h"
@@ -38,6 +40,11 @@ class Scene {
   void collect_garbage();
   /// A world's hash with the bits of the scene's generator and parameters.
   std::uint64_t state_hash(std::uint64_t start) const;
+  /// Runs a text in the scene's environment, as a callback: an expression has a value, statements have none.
+  Evaluation evaluate(std::string_view text);
+  /// The names that may stand at the end of a half-written text: globals, members, and inside quotes names of things.
+  /// Runs nothing of the scene's.
+  Evaluation complete(std::string_view text);
   /// Every name that a scene sees, one a line: globals, library.member, thing.member, thing:method.
   std::string names();
   /// The folder that the scene's show lives in.

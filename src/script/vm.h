@@ -5,6 +5,7 @@
 #include <string>
 #include <string_view>
 
+#include "base/evaluation.h"
 #include "base/message.h"
 #include "base/result.h"
 
@@ -30,6 +31,8 @@ class Vm {
   void tick(double dt);
   /// The handlers of osc:on that fit; whether there were any. [sim]
   bool message(const Message& message, const Origin& origin);
+  /// Asks an entry of the prelude's 95_console.lua, "evaluate" or "complete", about a text. [sim]
+  Evaluation ask(const char* entry, std::string_view text);
   /// Every name that a scene sees, one a line: globals, library.member, thing.member, thing:method. [sim]
   std::string names();
   /// Collects for about 100 µs when there is enough to collect. The collector rests at all other times. [sim]
@@ -44,7 +47,8 @@ class Vm {
     void operator()(lua_State* state) const;
   };
   std::unique_ptr<lua_State, Close> state_;
-  int run_ = -1;  // registry references of the prelude's entries
+  int entries_ = -1;  // registry references of the prelude's entries
+  int run_ = -1;
   int start_ = -1;
   int tick_ = -1;
   int message_ = -1;

@@ -15,6 +15,7 @@ local function show(value)
   if kind == "function" or kind == "thread" or kind == "userdata" then return kind end
   return native.tostring(value)
 end
+P.show = show
 
 local function plain(...)
   for i = 1, select("#", ...) do
@@ -236,7 +237,8 @@ end
 -- runs a scene's file; the fault's text, file and line when it fails
 function P.entry.run(text, name)
   P.sources[name], P.main = text, name
-  local chunk, message = native.load(text, "@" .. name, "t", P.make_env())
+  P.env = P.make_env()
+  local chunk, message = native.load(text, "@" .. name, "t", P.env)
   local fault
   if chunk then
     local ok, caught = xpcall(chunk, P.handler)
