@@ -14,6 +14,7 @@
 #include "base/build_info.h"
 #include "base/log.h"
 #include "base/text.h"
+#include "console/server.h"
 #include "engine/engine.h"
 #include "osc/network.h"
 
@@ -212,11 +213,21 @@ int finish(const PlayOptions& options, Engine& engine, bool interrupted) {
   return kFine;
 }
 
+// a show without a console is a show; batches have none, as they have no ports
+void open_console(ConsoleServer& console) {
+  if (const Result<void> open = console.start(); !open) {
+    log_warning("there is no console: {}", open.error());
+    return;
+  }
+  fmt::print(stderr, "limber: console {}\n", console.path());
+}
+
 int play_scene(const PlayOptions& options, EngineOptions engine_options, const OscOptions& osc,
                const sigset_t& signals) {
   EngineLink link;
   Engine engine(link, std::move(engine_options));
   Network network(link, osc, live_offsets());
+  ConsoleServer console(link, {.folder = "", .scene = printable(options.scene)});
   bool interrupted = false;
   {
     Show show(engine);
@@ -226,11 +237,15 @@ int play_scene(const PlayOptions& options, EngineOptions engine_options, const O
     if (!show.result()) return fail(kInput, show.result().error());
     if (const Result<void> open = network.start(); !open) return fail(kMachine, open.error());
     for (const std::string& line : network.lines()) fmt::print(stderr, "limber: {}\n", line);
-    if (!options.fast) fmt::print(stderr, "limber: playing headless; Ctrl+C ends it\n");
+    if (!options.fast) {
+      open_console(console);
+      fmt::print(stderr, "limber: playing headless; Ctrl+C ends it\n");
+    }
     show.go();
     interrupted = watch(show, engine, link, signals);
   }
   network.stop();
+  console.stop();
   return finish(options, engine, interrupted);
 }
 

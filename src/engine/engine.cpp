@@ -233,7 +233,23 @@ void Engine::drain() {
   link_.inbox.drain(commands_);
   for (Command& command : commands_) {
     for (Message& message : command.messages) execute(message, command.origin);
+    if (command.evaluate != nullptr) evaluate(*command.evaluate);
   }
+}
+
+// what a person mistypes is answered to them and is no fault of the show
+void Engine::evaluate(const Evaluate& wish) {
+  Evaluation said{Evaluation::Kind::error, "there is no scene to evaluate in"};
+  const std::uint64_t before = log_newest();
+  if (wish.text.size() > kMostEvaluated) {
+    said.text = fmt::format("a text for the scene has up to {} bytes, this one {}", kMostEvaluated, wish.text.size());
+  } else if (stage_->scene != nullptr) {
+    Scene& scene = *stage_->scene;
+    said = wish.wish == Evaluate::Wish::run ? scene.evaluate(wish.text) : scene.complete(wish.text);
+  }
+  said.log_before = before;
+  said.log_after = log_newest();
+  wish.answer(std::move(said));
 }
 
 void Engine::execute(Message& message, const Origin& origin) {
@@ -328,6 +344,7 @@ void Engine::plan_osc(const OscPlan& plan) {
 }
 
 void Engine::print(std::string_view text) {
+  log_line(LogLevel::print, text);
   if (options_.print) {
     ScriptHost::print(text);
   } else {

@@ -97,6 +97,7 @@ class Engine : private ScriptHost {
   bool between_ticks(const std::function<void()>& work);
   void drain();
   void execute(Message& message, const Origin& origin);
+  void evaluate(const Evaluate& wish);
   void refuse(std::string_view address, const Origin& origin, std::string_view error);
   void call_handlers();
   void publish();

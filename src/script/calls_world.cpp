@@ -73,6 +73,11 @@ std::int32_t stopped(void* c) {
   return 1;
 }
 
+std::int32_t fault(void* c) {
+  ScriptContext& context = context_of(c);
+  return context.say(context.guard->fault().text);
+}
+
 std::int32_t stop_text(void* c) {
   ScriptContext& context = context_of(c);
   return context.say(context.guard->stop_text());

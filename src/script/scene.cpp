@@ -73,6 +73,10 @@ bool Scene::arm() { return vm_->arm(); }
 
 void Scene::disarm() { vm_->disarm(); }
 
+Evaluation Scene::evaluate(std::string_view text) { return vm_->ask("evaluate", text); }
+
+Evaluation Scene::complete(std::string_view text) { return vm_->ask("complete", text); }
+
 std::string Scene::names() { return vm_->names(); }
 
 const std::string& Scene::show_folder() const { return context_->files.show_folder(); }

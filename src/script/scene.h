@@ -5,8 +5,10 @@
 #include <functional>
 #include <memory>
 #include <string>
+#include <string_view>
 #include <vector>
 
+#include "base/evaluation.h"
 #include "base/id.h"
 #include "base/message.h"
 #include "base/result.h"
@@ -74,6 +76,11 @@ class Scene {
   /// Values of the parameters with `rerun`, one after the other.
   void rerun_values(std::vector<double>& out) const;
 
+  /// Runs a text in the scene's environment, as a callback: an expression has a value, statements have none.
+  Evaluation evaluate(std::string_view text);
+  /// The names that may stand at the end of a half-written text: globals, members, and inside quotes names of things.
+  /// Runs nothing of the scene's.
+  Evaluation complete(std::string_view text);
   /// Every name that a scene sees, one a line: globals, library.member, thing.member, thing:method.
   std::string names();
   /// The folder that the scene's show lives in.

@@ -8,6 +8,7 @@
 
 #include "base/check.h"
 #include "base/log.h"
+#include "base/text.h"
 #include "script/context.h"
 #include "script/prelude.h"
 #include "script/scene.h"
@@ -220,6 +221,28 @@ bool Vm::message(const Message& message, const Origin& origin) {
   const bool heard = call(static_cast<int>(message.args.size()) + 2, 1) && lua_toboolean(L, -1) != 0;
   lua_settop(L, 0);
   return heard;
+}
+
+Evaluation Vm::ask(const char* entry, std::string_view text) {
+  using Kind = Evaluation::Kind;
+  constexpr std::pair<std::string_view, Kind> kKinds[] = {
+      {"value", Kind::value}, {"error", Kind::error}, {"incomplete", Kind::incomplete}, {"names", Kind::names}};
+  lua_State* const L = state_.get();
+  lua_rawgeti(L, LUA_REGISTRYINDEX, entries_);
+  lua_getfield(L, -1, entry);
+  push(L, text);
+  Evaluation said;
+  if (call(1, 3)) {
+    for (const auto& [word, kind] : kKinds) {
+      if (text_at(L, -3) == word) said.kind = kind;
+    }
+    said.text = shortened(text_at(L, -2), kMostEvaluated);
+    said.word = static_cast<std::size_t>(lua_tonumber(L, -1));
+  } else {
+    said = {Kind::error, "the console has a fault, the log tells which"};
+  }
+  lua_settop(L, 0);
+  return said;
 }
 
 std::string Vm::names() {

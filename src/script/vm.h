@@ -6,6 +6,7 @@
 #include <string>
 #include <string_view>
 
+#include "base/evaluation.h"
 #include "base/message.h"
 #include "base/result.h"
 #include "script/collector.h"
@@ -36,6 +37,8 @@ class Vm {
   void tick(double dt);
   /// The handlers of osc:on that fit; whether there were any. [sim]
   bool message(const Message& message, const Origin& origin);
+  /// Asks an entry of the prelude's 95_console.lua, "evaluate" or "complete", about a text. [sim]
+  Evaluation ask(const char* entry, std::string_view text);
   /// Every name that a scene sees, one a line: globals, library.member, thing.member, thing:method. [sim]
   std::string names();
   /// Calls of scripts' code, from C++ too: the state's main thread is `state()`. [sim]
@@ -72,12 +75,12 @@ class Vm {
   std::unique_ptr<lua_State, Close> state_;
   Guard guard_;
   std::optional<Collector> collector_;  // once the prelude is in
-  int run_ = -1;                        // registry references of the prelude's entries
+  int entries_ = -1;                    // registry references: the prelude's entries, all and each
+  int run_ = -1;
   int start_ = -1;
   int tick_ = -1;
   int message_ = -1;
   int names_ = -1;
-  int entries_ = -1;  // the table that these are of
 };
 
 }  // namespace limber

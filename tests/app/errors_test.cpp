@@ -118,6 +118,11 @@ std::vector<std::string> words_of(const std::string& input) {
 }
 
 Ran run_input(const std::string& input) {
+  // "in FOLDER ARGUMENTS" is called there
+  if (input.starts_with("in ")) {
+    const std::size_t blank = input.find(' ', 3);
+    return run(words_of(input.substr(blank + 1)), input.substr(3, blank - 3));
+  }
   // "^C when TEXT: ARGUMENTS" is somebody's Ctrl+C, twice, once that text was said
   if (!input.starts_with("^C when ")) return run(words_of(input));
   const std::size_t colon = input.find(": ");

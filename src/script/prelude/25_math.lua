@@ -41,6 +41,7 @@ function P.rgb(r, g, b)
 end
 
 local R = ffi.typeof("rng")
+P.value_members.rng = { uniform = 1, direction = 1, normal = 1 }
 local methods = {}
 local function check(self, what)
   if not istype(R, self) then fail("rng.%s is a method: write rng:%s(…)", what, what) end
@@ -69,7 +70,7 @@ function methods.normal(self)
 end
 setmetatable(methods, {
   __index = function(_, key)
-    fail("rng has no member '%s'%s", tostring(key), P.hint(key, { "uniform", "direction", "normal" }))
+    fail("rng has no member '%s'%s", tostring(key), P.hint(key, P.sorted_keys(P.value_members.rng)))
   end,
 })
 ffi.metatype(R, { __index = methods, __tostring = function() return "rng" end,

@@ -112,9 +112,10 @@ function P.params_moved()
   node.slot_, node.generation_ = answer.slot, answer.generation
 end
 
+function P.parameter_names() return class and class.getters or {} end
+
 local function no_parameter(key)
-  local names = class and P.sorted_keys(class.getters) or {}
-  fail("params has no '%s'%s", tostring(key), P.hint(key, names))
+  fail("params has no '%s'%s", tostring(key), P.hint(key, P.sorted_keys(P.parameter_names())))
 end
 
 P.params = setmetatable({}, {

@@ -3,13 +3,13 @@ local P = ...
 local api, ctx = P.api, P.ctx
 local getinfo, format, sub, find = debug.getinfo, string.format, string.sub, string.find
 
--- text of every script by the name that messages show
+-- text of every script by the name that messages show; true where it is no longer known
 local sources = {}
 P.sources = sources
 
 local function source_line(file, line)
   local text, at = sources[file], 1
-  if not text then return nil end
+  if type(text) ~= "string" then return nil end
   for _ = 2, line do
     local stop = find(text, "\n", at, true)
     if not stop then return nil end

@@ -3,7 +3,7 @@
 
 #include <atomic>
 
-#include "osc/socket.h"
+#include "base/descriptor.h"
 
 namespace limber {
 
@@ -18,7 +18,7 @@ class Wake {
   int fd() const { return event_.fd(); }
 
  private:
-  Socket event_;
+  Descriptor event_;
   std::atomic<bool> rung_{false};
 };
 

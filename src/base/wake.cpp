@@ -1,5 +1,5 @@
 // An eventfd closes like a socket.
-#include "osc/wake.h"
+#include "base/wake.h"
 
 #include <sys/eventfd.h>
 #include <unistd.h>
