@@ -88,7 +88,7 @@ function P.entry.evaluate(text)
     chunk, wrong = load(text, "@console", P.env)
     if not chunk then
       if may_go_on(as_value) or may_go_on(wrong) then return "incomplete", "" end
-      return "error", P.syntax_fault(wrong).text
+      return "error", P.handler(wrong).text
     end
   end
   local result
