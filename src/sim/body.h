@@ -8,6 +8,7 @@
 
 #include "model/body_model.h"
 #include "params/store.h"
+#include "sim/behavior.h"
 #include "sim/joint.h"
 #include "sim/motor.h"
 #include "sim/part.h"
@@ -40,10 +41,13 @@ class Body {
   std::span<const std::unique_ptr<Part>> parts() const { return parts_; }
   std::span<const std::unique_ptr<Joint>> joints() const { return joints_; }
   std::span<const std::unique_ptr<Motor>> motors() const { return motors_; }
+  /// In the order in which they were made; the world's list (sim/behavior_list.h) makes and removes them.
+  std::span<Behavior* const> behaviors() const { return behaviors_; }
   Part* root() const { return parts_.empty() ? nullptr : parts_.front().get(); }
   Part* find_part(std::string_view name) const;
   Joint* find_joint(std::string_view name) const;
   Motor* find_motor(std::string_view name) const;
+  Behavior* find_behavior(std::string_view name) const;
   /// The model it was imported from, or null; carries the merged links' frames.
   const std::shared_ptr<const BodyModel>& model() const { return model_; }
   /// World pose of a link by name, merged ones included.
@@ -84,6 +88,8 @@ class Body {
 
  private:
   friend class World;
+  friend class Behavior;
+  friend class BehaviorList;
   void build(const std::shared_ptr<const BodyModel>& model, const BuildOptions& options);
   void build_motor(Joint& joint, const JointModel& m, bool servo);
   void build_copy(const Body& source);
@@ -104,13 +110,15 @@ class Body {
 
   World& world_;
   NodeId id_;
-  NodeId part_group_, joint_group_, motor_group_;
+  NodeId part_group_, joint_group_, motor_group_, behavior_group_;
   std::shared_ptr<const BodyModel> model_;
   std::vector<std::unique_ptr<Part>> parts_;
   std::vector<std::unique_ptr<Joint>> joints_;
   std::vector<std::unique_ptr<Motor>> motors_;
   std::vector<Motor*> followers_;
-  Pose planned_;  // while there is no part
+  std::vector<Behavior*> behaviors_;
+  std::uint32_t structure_ = 0;  // counts what is added: behaviours then look for their targets anew
+  Pose planned_;                 // while there is no part
   bool in_world_ = true;
   std::size_t entered_parts_ = 0;  // the first so many are in Bullet's world
   std::size_t entered_joints_ = 0;

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "params/store.h"
+#include "sim/behavior_list.h"
 #include "sim/body.h"
 #include "sim/contacts.h"
 #include "sim/island_world.h"
@@ -19,6 +20,7 @@ namespace limber {
 
 /// Where the tick's time went, seconds of the last tick.
 struct TickTimes {
+  double behaviors = 0;
   double effects = 0;
   double physics = 0;
   double readouts = 0;
@@ -50,12 +52,15 @@ class World {
   Shape* find_shape(std::string_view name) const;
   std::span<const std::unique_ptr<Shape>> shapes() const { return shapes_; }
 
+  BehaviorList& behaviors() { return *behaviors_; }
+  const BehaviorList& behaviors() const { return *behaviors_; }
+
   double time() const;
   std::uint64_t tick() const { return tick_; }
   double timestep() const;
   std::uint64_t seed() const;
 
-  /// One tick: effects of what was set, `substeps` internal steps, readouts, contacts, health.
+  /// One tick: behaviours, effects of what was set, `substeps` internal steps, readouts, contacts, health.
   void step();
   /// Effects and readouts without time passing: while paused, and before the first tick.
   void settle();
@@ -63,7 +68,7 @@ class World {
   void ask_reset() { reset_asked_ = true; }
   /// Whether sim:reset or /transport/reset asked for a reset since the last call.
   bool take_reset_request() { return std::exchange(reset_asked_, false); }
-  /// Removes every body and shape; the world's own rows return to their defaults.
+  /// Removes every behaviour, body and shape; the world's own rows return to their defaults.
   void clear();
   /// Time and ticks from 0.
   void restart_time();
@@ -97,6 +102,7 @@ class World {
   std::unique_ptr<IslandWorld> bullet_;
   std::vector<std::unique_ptr<Shape>> shapes_;
   std::vector<std::unique_ptr<Body>> bodies_;
+  std::unique_ptr<BehaviorList> behaviors_;
   struct ModelGeometry {
     std::shared_ptr<const BodyModel> model;  // keeps the key's address from being used again
     std::vector<std::shared_ptr<const Geometry>> links;
