@@ -3,7 +3,14 @@
 
 #include <fmt/format.h>
 
+#include "script/behavior_scripts.h"
+
 namespace limber {
+
+ScriptContext::ScriptContext(World& w, ScriptHost& h, SceneOptions o)
+    : world(w), host(h), options(std::move(o)), behaviors(std::make_shared<BehaviorScripts>(*this)) {}
+
+ScriptContext::~ScriptContext() { behaviors->close(); }
 
 std::int32_t ScriptContext::say(std::string what) {
   text = std::move(what);
@@ -31,7 +38,7 @@ Random& ScriptContext::generator() {
 
 std::uint64_t ScriptContext::hash(std::uint64_t start) {
   const auto& words = generator().state();
-  start = hash_bytes({reinterpret_cast<const char*>(words.data()), sizeof words}, start);
+  start = behaviors->hash(hash_bytes({reinterpret_cast<const char*>(words.data()), sizeof words}, start));
   if (params == nullptr) return start;
   const double* kept = std::as_const(world.store()).kept_block(params->id());
   return hash_bytes({reinterpret_cast<const char*>(kept), params->table().kept_width() * sizeof(double)}, start);

@@ -20,8 +20,11 @@
 
 namespace limber {
 
+class BehaviorScripts;
+
 struct ScriptContext {
-  ScriptContext(World& w, ScriptHost& h, SceneOptions o) : world(w), host(h), options(std::move(o)) {}
+  ScriptContext(World& w, ScriptHost& h, SceneOptions o);
+  ~ScriptContext();
 
   World& world;
   ScriptHost& host;
@@ -37,7 +40,7 @@ struct ScriptContext {
   std::optional<std::uint64_t> seeded_with;
   Random random;
   Random& generator();
-  /// The world's hash with the bits of the scene's generators and parameters.
+  /// The world's hash with the bits of the generators of all files, and of the scene's parameters.
   std::uint64_t hash(std::uint64_t start);
 
   // gathered by several calls before the one that makes something of them
@@ -53,6 +56,7 @@ struct ScriptContext {
   bool handling_message = false;
   std::int32_t handlers = 0;  ///< Registered by osc:on.
   std::unique_ptr<ParamsNode> params;
+  std::shared_ptr<BehaviorScripts> behaviors;  ///< Shared with the behaviours that live in the world.
 
   // answers
   std::int32_t say(std::string what);

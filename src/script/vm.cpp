@@ -8,6 +8,7 @@
 
 #include "base/check.h"
 #include "base/log.h"
+#include "script/behavior_scripts.h"
 #include "script/context.h"
 #include "script/prelude.h"
 
@@ -51,6 +52,7 @@ Vm::Vm(ScriptContext& context) : state_(luaL_newstate()) {
   luaL_openlibs(L);
   load_prelude(context);
   keep_entries();
+  context.behaviors->open(*this);
   lua_gc(L, LUA_GCCOLLECT, 0);
   used_after_cycle_ = kilobytes(L);
   lua_gc(L, LUA_GCSTOP, 0);
@@ -100,6 +102,16 @@ void Vm::keep_entries() {
     tick_ = keep("tick");
     message_ = keep("message");
     names_ = keep("names");
+    handler_ = keep("handler");
+    make_behavior_ = keep("make_behavior");
+    renew_behavior_ = keep("renew_behavior");
+    restore_behavior_ = keep("restore_behavior");
+    behavior_state_ = keep("behavior_state");
+    drop_behavior_ = keep("drop_behavior");
+    behavior_self_ = keep("behavior_self");
+    behavior_start_ = keep("behavior_start");
+    behavior_step_ = keep("behavior_step");
+    behavior_migrate_ = keep("behavior_migrate");
   }
   lua_settop(L, 0);
 }

@@ -1,12 +1,15 @@
 // Vm: the one LuaJIT state of a scene, with the trusted prelude inside. Everything runs on the simulation thread.
 #pragma once
 
+#include <cstdint>
 #include <memory>
 #include <string>
 #include <string_view>
 
+#include "base/id.h"
 #include "base/message.h"
 #include "base/result.h"
+#include "sim/behavior.h"
 
 struct lua_State;
 
@@ -30,6 +33,14 @@ class Vm {
   void tick(double dt);
   /// The handlers of osc:on that fit; whether there were any. [sim]
   bool message(const Message& message, const Origin& origin);
+  // Behaviours of behaviors_lua/ (behavior_scripts.h); a fault without text: it went well.
+  /// Makes the `self` of an instance: its number, from 1. [sim]
+  std::int32_t make_behavior(std::int32_t file, NodeId id);
+  BehaviorFault start_behavior(std::int32_t number);
+  BehaviorFault step_behavior(std::int32_t number, double dt);
+  BehaviorFault restore_behavior(std::int32_t number, std::string_view state, bool migrate);
+  Result<std::string> behavior_state(std::int32_t number);
+  void drop_behavior(std::int32_t number);
   /// Every name that a scene sees, one a line: globals, library.member, thing.member, thing:method. [sim]
   std::string names();
   /// Collects for about 100 µs when there is enough to collect. The collector rests at all other times. [sim]
@@ -39,6 +50,8 @@ class Vm {
   void load_prelude(ScriptContext& context);
   void keep_entries();
   bool call(int arguments, int results);
+  bool push_behavior(int functions, std::int32_t number);
+  BehaviorFault guarded_behavior(int arguments, int results);
 
   struct Close {
     void operator()(lua_State* state) const;
@@ -49,6 +62,16 @@ class Vm {
   int tick_ = -1;
   int message_ = -1;
   int names_ = -1;
+  int handler_ = -1;
+  int make_behavior_ = -1;
+  int renew_behavior_ = -1;
+  int restore_behavior_ = -1;
+  int behavior_state_ = -1;
+  int drop_behavior_ = -1;
+  int behavior_self_ = -1;  // tables by the number of the instance
+  int behavior_start_ = -1;
+  int behavior_step_ = -1;
+  int behavior_migrate_ = -1;
   double used_after_cycle_ = 0;  // kB
   bool collecting_ = false;
 };

@@ -23,14 +23,6 @@ std::vector<Describe>& registered() {
   return list;
 }
 
-// the form in which types' names are compared
-std::string plain_type(std::string_view name) {
-  constexpr std::string_view kEnd = "behavior";
-  std::string plain = plain_name(name);
-  if (plain.size() > kEnd.size() && plain.ends_with(kEnd)) plain.resize(plain.size() - kEnd.size());
-  return plain;
-}
-
 std::vector<Row> with_common(std::vector<Row> common, const std::vector<Row>& parameters) {
   LIMBER_CHECK(common.size() == kCommonBehaviorRows);
   for (const Row& row : parameters) {
@@ -41,6 +33,13 @@ std::vector<Row> with_common(std::vector<Row> common, const std::vector<Row>& pa
 }
 
 }  // namespace
+
+std::string plain_type_name(std::string_view name) {
+  constexpr std::string_view kEnd = "behavior";
+  std::string plain = plain_name(name);
+  if (plain.size() > kEnd.size() && plain.ends_with(kEnd)) plain.resize(plain.size() - kEnd.size());
+  return plain;
+}
 
 BehaviorType BehaviorType::of(std::string name, std::string doc, BehaviorTargets targets, bool is_group,
                               std::vector<Row> parameters, std::function<std::unique_ptr<Behavior>()> make) {
@@ -73,8 +72,8 @@ BehaviorTypes::BehaviorTypes() {
 
 Result<void> BehaviorTypes::add(BehaviorType type) {
   if (const auto fault = name_fault(type.name)) return Error{fmt::format("behavior type: {}", *fault)};
-  const std::string plain = plain_type(type.name);
-  const auto same = [&](const auto& t) { return plain_type(t->name) == plain; };
+  const std::string plain = plain_type_name(type.name);
+  const auto same = [&](const auto& t) { return plain_type_name(t->name) == plain; };
   const auto known = std::find_if(types_.begin(), types_.end(), same);
   if (known != types_.end() && (*known)->is_built_in) {
     return Error{fmt::format("'{}' is a built-in behavior type ('{}'); call the file something else",
@@ -90,14 +89,14 @@ Result<void> BehaviorTypes::add(BehaviorType type) {
 }
 
 void BehaviorTypes::remove(std::string_view name) {
-  const std::string plain = plain_type(name);
-  std::erase_if(types_, [&](const auto& t) { return !t->is_built_in && plain_type(t->name) == plain; });
+  const std::string plain = plain_type_name(name);
+  std::erase_if(types_, [&](const auto& t) { return !t->is_built_in && plain_type_name(t->name) == plain; });
 }
 
 std::shared_ptr<const BehaviorType> BehaviorTypes::find(std::string_view name) const {
-  const std::string plain = plain_type(name);
+  const std::string plain = plain_type_name(name);
   for (const auto& type : types_) {
-    if (plain_type(type->name) == plain) return type;
+    if (plain_type_name(type->name) == plain) return type;
   }
   return nullptr;
 }
@@ -107,7 +106,7 @@ Result<std::shared_ptr<const BehaviorType>> BehaviorTypes::require(std::string_v
   std::vector<std::string_view> names;
   for (const auto& type : types_) names.push_back(type->name);
   // near ones are looked for without the ending of the seed's class names
-  const std::string plain = plain_type(name);
+  const std::string plain = plain_type_name(name);
   const std::string_view written = plain.size() < plain_name(name).size() ? plain : name;
   return Error{fmt::format("there is no behavior type '{}'{}", printable(name), name_hint(written, names))};
 }

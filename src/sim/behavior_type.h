@@ -15,6 +15,9 @@ namespace limber {
 
 class Behavior;
 
+/// The form in which types' names are compared: the naming rule, and a trailing "behavior" dropped.
+std::string plain_type_name(std::string_view name);
+
 /// What of a body a type acts on.
 enum class BehaviorTargets : std::uint8_t {
   parts,

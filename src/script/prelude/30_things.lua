@@ -45,6 +45,10 @@ function P.answered()
   return thing(answer.slot, answer.generation)
 end
 
+-- another class of handles; what one of its handles is called, and whose it is
+function P.add_class(class) by_ctype[tonumber(class.ctype)] = class end
+function P.introduce(h, name, owner) names[h], owners[h] = name, owner end
+
 local function class_of(value)
   return type(value) == "cdata" and by_ctype[tonumber(ffi.typeof(value))] or nil
 end

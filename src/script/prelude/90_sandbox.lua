@@ -116,10 +116,12 @@ local function next_pair(walk)
   return key, rawget(t, key)
 end
 local function fixed_pairs(t)
-  if istype(P.L, t) or istype(P.F, t) then return P.ipairs(t) end
+  if istype(P.L, t) or istype(P.S, t) or istype(P.F, t) then return P.ipairs(t) end
   if type(t) ~= "table" then fail("pairs takes a table, not %s", describe(t)) end
   return next_pair, { t = t, keys = gather_keys(t), i = 0 }
 end
+
+P.pairs = fixed_pairs
 
 local function joined(...)
   local list = { ... }
@@ -148,12 +150,13 @@ end
 local meta = native.getmetatable("")
 meta.__index, meta.__metatable = make_string(), "string"
 
-local function add_libraries(env)
+local function add_libraries(env, file)
   env.string = make_string()
   env.table = copy(table, "concat insert remove maxn")
   env.table.sort = sort
   env.math = copy(math, kMath)
   for name, f in pairs(P.math_extra) do env.math[name] = f end
+  env.math.random = P.make_random(-2 - file)
   env.bit = copy(bit, kBit)
   env.coroutine = copy(coroutine, "create yield status running")
   env.coroutine.resume, env.coroutine.wrap = resume, wrap
@@ -192,8 +195,8 @@ local function add_functions(env)
   end
 end
 
--- modules of scripts/lib run in the environment of the script that requires them, once
-local function make_require(env)
+-- modules of a lib folder run in the environment of the script that requires them, once
+local function make_require(env, file)
   local loaded, loading = {}, {}
   return function(name)
     if type(name) ~= "string" or not ("." .. name):gsub("%.[%w_]+", ""):find("^$") then
@@ -203,10 +206,10 @@ local function make_require(env)
     for _, other in ipairs(loading) do
       if other == name then fail("require goes in a circle: %s -> %s", table.concat(loading, " -> "), name) end
     end
-    if api.read_lib(ctx, name, #name) ~= 0 then fail("%s", P.text()) end
-    local file, text = P.text():match("^(.-)\n(.*)$")
-    P.sources[file] = text
-    local chunk, fault = native.load(text, "@" .. file, "t", env)
+    if api.read_lib(ctx, file, name, #name) ~= 0 then fail("%s", P.text()) end
+    local shown, text = P.text():match("^(.-)\n(.*)$")
+    P.sources[shown] = text
+    local chunk, fault = native.load(text, "@" .. shown, "t", env)
     if not chunk then error(fault, 0) end
     loading[#loading + 1] = name
     local ok, result = native.pcall(chunk, name)
@@ -217,17 +220,26 @@ local function make_require(env)
   end
 end
 
-function P.make_env()
-  local env = {}
-  add_libraries(env)
+-- names that one kind of script has and the other has not
+local elsewhere = {
+  scene = { behavior = "; a behavior is a file of its own in behaviors_lua/" },
+  behavior = { state = "; a behavior keeps what it remembers in self.state" },
+}
+
+-- of the scene (file -1), or of a behaviour's file, by its number
+function P.make_env(file)
+  local env, kind = {}, file < 0 and "scene" or "behavior"
+  add_libraries(env, file)
   add_functions(env)
-  env.require = make_require(env)
-  env.vec3, env.quat, env.rgb, env.rng = P.vec3, P.make_quat(), P.rgb, P.rng
-  env.sim, env.osc, env.params, env.state = P.sim, P.osc, P.params, {}
+  env.require = make_require(env, file)
+  env.vec3, env.quat, env.rgb, env.rng = P.vec3, P.make_quat(), P.rgb, P.R(-2 - file, 0)
+  env.sim, env.osc, env.params = P.sim, P.osc, P.params
+  if kind == "scene" then env.state = {} end
   return setmetatable(env, {
     __index = function(_, key)
-      local hint = P.hint(key, P.sorted_keys(env))
-      fail("there is no global '%s'%s", tostring(key), hint:find("did you mean", 1, true) and hint or "")
+      local hint = elsewhere[kind][key] or P.hint(key, P.sorted_keys(env))
+      local helps = elsewhere[kind][key] or hint:find("did you mean", 1, true)
+      fail("there is no global '%s'%s", tostring(key), helps and hint or "")
     end,
     __metatable = "environment",
   })
@@ -236,7 +248,7 @@ end
 -- runs a scene's file; the fault's text, file and line when it fails
 function P.entry.run(text, name)
   P.sources[name], P.main = text, name
-  local chunk, message = native.load(text, "@" .. name, "t", P.make_env())
+  local chunk, message = native.load(text, "@" .. name, "t", P.make_env(-1))
   local fault
   if chunk then
     local ok, caught = xpcall(chunk, P.handler)
@@ -252,7 +264,7 @@ end
 -- every name that a scene sees, one a line: globals, members of libraries, then members and methods of things
 function P.entry.names()
   local lines = {}
-  local env = P.make_env()
+  local env = P.make_env(-1)
   for _, name in ipairs(P.sorted_keys(env)) do
     local value = rawget(env, name)
     lines[#lines + 1] = name
