@@ -22,7 +22,7 @@ bool same_row(const Row& a, const Row& b) {
 
 const Table& shared_table(std::string name, std::string path, std::vector<Row> rows) {
   static std::mutex mutex;
-  static std::vector<std::unique_ptr<const Table>> tables;
+  static auto& tables = *new std::vector<std::unique_ptr<const Table>>;  // a store may go after whatever else is static
   const std::scoped_lock lock(mutex);
   for (const auto& table : tables) {
     if (table->name() != name || table->path() != path) continue;

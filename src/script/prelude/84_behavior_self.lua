@@ -133,7 +133,6 @@ end
 local entry = P.entry
 local selfs, starts, steps, migrates = {}, {}, {}, {}
 entry.behavior_self, entry.behavior_start, entry.behavior_step, entry.behavior_migrate = selfs, starts, steps, migrates
-entry.handler = P.handler
 
 function entry.make_behavior(file, slot, generation)
   local of = P.behavior_types[file]
