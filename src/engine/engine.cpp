@@ -84,6 +84,7 @@ void Engine::reset() {
   }
   faults_ += before.health_events();
   stage_ = std::move(fresh);
+  if (stage_->scene != nullptr) stage_->scene->arm();  // while both were there, the new one ran interpreted
   // what the performer set and the scene still has
   for (const Message* message : hand_.in_order()) (void)stage_->dispatch.execute(*message);
   stage_->world.settle();

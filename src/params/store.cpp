@@ -124,7 +124,7 @@ NodeId Store::retable(NodeId id, const Table& table, void* thing) {
         std::find(row.choices.begin(), row.choices.end(), old->choices[static_cast<std::size_t>(values[0])]);
     carried[at] = label == row.choices.end() ? row.initial[0] : static_cast<double>(label - row.choices.begin());
   }
-  give_back_blocks(id);
+  give_back_blocks(id.slot);
   NodeSlot& slot = slots_[id.slot];
   slot.generation += 2;
   slot.table = table_number(table);
@@ -147,30 +147,34 @@ NodeId Store::retable(NodeId id, const Table& table, void* thing) {
   return renewed;
 }
 
-void Store::give_back_blocks(NodeId id) {
-  const NodeSlot& slot = slots_[id.slot];
-  const Table& table = *nodes_[id.slot].table;
-  const auto give_back = [](std::vector<std::vector<std::uint32_t>>& spare, std::uint32_t base, std::uint32_t width) {
+// the numbers of a node, whose room is used again
+void Store::give_back_blocks(std::uint32_t at) {
+  const NodeSlot& slot = slots_[at];
+  const Table& table = *nodes_[at].table;
+  const auto spare = [](std::vector<std::vector<std::uint32_t>>& list, std::uint32_t base, std::uint32_t width) {
     if (width == 0) return;
-    if (spare.size() <= width) spare.resize(width + 1);
-    spare[width].push_back(base);
+    if (list.size() <= width) list.resize(width + 1);
+    list[width].push_back(base);
   };
   // a freed block is zero, so that snapshots and hashes do not tell of the dead
   std::fill_n(kept_.begin() + slot.kept, table.kept_width(), 0.0);
   std::fill_n(live_.begin() + slot.live, table.live_width(), 0.0);
-  give_back(spare_kept_, slot.kept, table.kept_width());
-  give_back(spare_live_, slot.live, table.live_width());
+  spare(spare_kept_, slot.kept, table.kept_width());
+  spare(spare_live_, slot.live, table.live_width());
 }
 
 void Store::release(NodeId id) {
   for (const NodeId child : nodes_[id.slot].children) release(child);
-  Node& node = nodes_[id.slot];
-  NodeSlot& slot = slots_[id.slot];
   child_of_.erase(child_of_.find(id.slot));
-  give_back_blocks(id);
-  slot.generation++;  // odd to even: gone
-  free_slots_.push_back(id.slot);
-  node = {};
+  slots_[id.slot].generation++;  // odd to even: gone
+  give_back(id.slot);
+}
+
+// what a slot holds, of a node that is gone
+void Store::give_back(std::uint32_t at) {
+  give_back_blocks(at);
+  free_slots_.push_back(at);
+  nodes_[at] = {};
 }
 
 void Store::remove(NodeId id) {
@@ -243,6 +247,7 @@ Result<SetOutcome> Store::set(NodeId id, const Row& row, std::span<const double>
     row.write(the_thing, taken.data());
     return outcome;
   }
+  keep(id, row);
   std::copy_n(taken.data(), row.width, slot_values(id, row));
   if (!row.live) kept_version_++;
   mark(id, row);
@@ -272,18 +277,23 @@ void Store::apply_marks() {
   for (int round = 0; round < 4 && !marked_.empty(); round++) {
     applying_.clear();
     applying_.swap(marked_);
-    for (const NodeId id : applying_) {
-      if (!alive(id)) continue;
-      const Table& table = *nodes_[id.slot].table;
-      std::array<void (*)(void*), 64> done;
-      auto end = done.begin();
-      for (std::uint64_t marks = std::exchange(nodes_[id.slot].marks, 0); marks != 0; marks &= marks - 1) {
-        const Row& row = table.row(static_cast<std::uint32_t>(std::countr_zero(marks)));
-        if (std::find(done.begin(), end, row.effect) != end) continue;
-        *end++ = row.effect;
-        row.effect(nodes_[id.slot].thing);
-      }
-    }
+    for (const NodeId id : applying_) run_effects(id);
+  }
+}
+
+// the node stays in the list, where it finds nothing left to do: looking for it would cost more
+void Store::apply_marks(NodeId id) { run_effects(id); }
+
+void Store::run_effects(NodeId id) {
+  if (!alive(id)) return;
+  const Table& table = *nodes_[id.slot].table;
+  std::array<void (*)(void*), 64> done;
+  auto end = done.begin();
+  for (std::uint64_t marks = std::exchange(nodes_[id.slot].marks, 0); marks != 0; marks &= marks - 1) {
+    const Row& row = table.row(static_cast<std::uint32_t>(std::countr_zero(marks)));
+    if (std::find(done.begin(), end, row.effect) != end) continue;
+    *end++ = row.effect;
+    row.effect(nodes_[id.slot].thing);
   }
 }
 

@@ -11,6 +11,7 @@
 
 #include "base/id.h"
 #include "base/result.h"
+#include "params/store_undo.h"
 #include "params/table.h"
 
 namespace limber {
@@ -98,6 +99,27 @@ class Store {
   void mark_all(NodeId id);
   /// Runs the effects of all marked rows, each function once a node, in the order in which nodes were marked.
   void apply_marks();
+  /// The same for one node, ahead of the others.
+  void apply_marks(NodeId id);
+  /// Whether the row waits for its effect.
+  bool marked(NodeId id, const Row& row) const { return (node(id).marks >> row.index & 1u) != 0; }
+
+  /// From here on the log keeps what each value was, until end_undo() or take_back(). Allocates only while it grows.
+  void begin_undo();
+  /// The call ended well: what it wrote stays.
+  void end_undo();
+  /// The call failed: every value, and whether its effect waits, is as it was when begin_undo() was called.
+  void take_back();
+  /// Before something writes past the door: lets the log know the value. Costs nothing outside of a guarded call.
+  void keep(NodeId id, const Row& row) {
+    if (undo_.active) keep_value(id, row);
+  }
+  /// Takes the node and all below it out of sight, as if removed; the answer is its place among its siblings.
+  std::size_t hide(NodeId id);
+  /// Brings a hidden node back to its place, with the id that it had.
+  void show(NodeId id, std::size_t place);
+  /// Removes a hidden node for good.
+  void drop_hidden(NodeId id);
 
   std::span<const double> kept() const { return kept_; }
   std::span<const double> live() const { return live_; }
@@ -159,7 +181,11 @@ class Store {
   std::uint32_t take_block(std::vector<double>& block, std::vector<std::vector<std::uint32_t>>& spare,
                            std::uint32_t width);
   void release(NodeId id);
-  void give_back_blocks(NodeId id);
+  void give_back_blocks(std::uint32_t slot);
+  void give_back(std::uint32_t slot);
+  void keep_value(NodeId id, const Row& row);
+  void turn_hidden(NodeId id, bool hide);
+  void run_effects(NodeId id);
   void refresh_view();
 
   std::vector<NodeSlot> slots_;
@@ -173,6 +199,7 @@ class Store {
   std::vector<const Table*> tables_;
   std::vector<NodeId> marked_;
   std::vector<NodeId> applying_;
+  StoreUndo undo_;
   NodeId root_;
   std::uint64_t kept_version_ = 0;
   std::uint64_t structure_version_ = 0;

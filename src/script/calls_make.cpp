@@ -170,6 +170,7 @@ std::int32_t add_child(void* c, std::int32_t slot, std::int32_t generation, std:
   Shape* shape = thing_of<Shape>(context, id_of(slot, generation));
   const Shape* child = thing_of<Shape>(context, id_of(child_slot, child_generation));
   if (shape == nullptr || child == nullptr) return kGone;
+  context.world.undo().keep(*shape);
   const Result<void> done = shape->add_child(*child, pose_at(pose));
   return done ? kOk : context.refuse(done.error());
 }

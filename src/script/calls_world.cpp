@@ -9,6 +9,7 @@
 #include "params/units.h"
 #include "script/behavior_scripts.h"
 #include "script/context.h"
+#include "script/guard.h"
 #include "script/noise.h"
 
 namespace limber::calls {
@@ -42,9 +43,23 @@ void print(void* c, const char* text, std::int32_t length) { context_of(c).host.
 
 void warn(void*, const char* text, std::int32_t length) { log_line(LogLevel::warning, text_of(text, length)); }
 
-void script_error(void* c, const char* file, std::int32_t file_length, std::int32_t line, const char* text,
-                  std::int32_t length) {
-  context_of(c).host.script_error(text_of(file, file_length), line, text_of(text, length));
+void report(void* c) {
+  ScriptContext& context = context_of(c);
+  const ScriptFault& fault = context.guard->fault();
+  context.host.script_error(fault.file, fault.line, fault.text);
+}
+
+std::int32_t stopped(void* c) {
+  ScriptContext& context = context_of(c);
+  if (!context.guard->stopped()) return 0;
+  context.say(std::string(context.guard->stop_file()));
+  context.answer.number[0] = context.guard->stop_line();
+  return 1;
+}
+
+std::int32_t stop_text(void* c) {
+  ScriptContext& context = context_of(c);
+  return context.say(context.guard->stop_text());
 }
 
 std::int32_t read_lib(void* c, std::int32_t of, const char* name, std::int32_t length) {
@@ -94,7 +109,7 @@ std::int32_t contact(void* c, std::int32_t index) {
   return kOk;
 }
 
-void ask_reset(void* c) { context_of(c).host.ask_reset(); }
+void ask_reset(void* c) { context_of(c).reset_wanted = true; }
 
 void param_begin(void* c) { context_of(c).param_rows.clear(); }
 

@@ -44,6 +44,35 @@ std::uint64_t ScriptContext::hash(std::uint64_t start) {
   return hash_bytes({reinterpret_cast<const char*>(kept), params->table().kept_width() * sizeof(double)}, start);
 }
 
+void ScriptContext::begin_call() {
+  answer.call++;
+  random_before_ = random;
+  seeded_before_ = seeded_with;
+  reset_wanted = false;
+  world.undo().begin();
+}
+
+void ScriptContext::end_call(bool good) {
+  if (good) {
+    world.undo().end();
+    for (Held& h : held) {
+      if (h.way == Way::all) {
+        host.send(std::move(h.message));
+      } else if (h.way == Way::sender) {
+        host.reply(h.to, std::move(h.message));
+      } else {
+        host.send_direct(h.to, std::move(h.message));
+      }
+    }
+    if (reset_wanted) host.ask_reset();
+  } else {
+    world.undo().take_back();
+    random = random_before_;
+    seeded_with = seeded_before_;
+  }
+  held.clear();
+}
+
 std::string label_of(const ScriptContext& c, NodeId id) {
   const Store& store = c.world.store();
   if (!store.alive(id)) return "a thing that no longer exists";

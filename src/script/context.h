@@ -21,6 +21,7 @@
 namespace limber {
 
 class BehaviorScripts;
+class Guard;
 
 struct ScriptContext {
   ScriptContext(World& w, ScriptHost& h, SceneOptions o);
@@ -58,6 +59,21 @@ struct ScriptContext {
   std::unique_ptr<ParamsNode> params;
   std::shared_ptr<BehaviorScripts> behaviors;  ///< Shared with the behaviours that live in the world.
 
+  // guarded calls: what one asks of the outside waits until it has ended well
+  Guard* guard = nullptr;  ///< Of the scene's Vm.
+  enum class Way : std::uint8_t { all, sender, direct };
+  struct Held {
+    Way way;
+    Origin to;
+    Message message;
+  };
+  std::vector<Held> held;
+  bool reset_wanted = false;
+  /// From here on everything that a script does is kept for the undo.
+  void begin_call();
+  /// A good one's messages go out; a bad one is taken back, its random draws too.
+  void end_call(bool good);
+
   // answers
   std::int32_t say(std::string what);
   std::int32_t refuse(std::string why) {
@@ -66,6 +82,10 @@ struct ScriptContext {
   }
   std::int32_t tell(NodeId id);
   bool alive(NodeId id) const { return world.store().alive(id); }
+
+ private:
+  Random random_before_;
+  std::optional<std::uint64_t> seeded_before_;
 };
 
 inline ScriptContext& context_of(void* c) { return *static_cast<ScriptContext*>(c); }

@@ -19,7 +19,8 @@ struct ScriptContext;
 class Scene {
  public:
   /// World and host outlive the scene. What a scene made in the world stays when the scene goes, but its parameters.
-  Scene(World& world, ScriptHost& host, SceneOptions options);
+  /// Live when that is wanted and no other scene of the process is: only one can run compiled.
+  Scene(World& world, ScriptHost& host, SceneOptions options, VmMode wanted = VmMode::live);
   ~Scene();
   Scene(const Scene&) = delete;
   Scene& operator=(const Scene&) = delete;
@@ -36,6 +37,10 @@ class Scene {
   bool message(const Message& message, const Origin& origin);
   /// After each tick: about 100 µs at most, nothing while there is little to collect.
   void collect_garbage();
+  VmMode mode() const;
+  /// Draft to live: once the other scene has gone, or was disarmed; false while it has not.
+  bool arm();
+  void disarm();
   /// A world's hash with the bits of the scene's generator and parameters.
   std::uint64_t state_hash(std::uint64_t start) const;
   /// Every name that a scene sees, one a line: globals, library.member, thing.member, thing:method.

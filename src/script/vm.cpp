@@ -1,7 +1,7 @@
 // The Lua state: opened, filled with the prelude, called, collected.
 #include "script/vm.h"
 
-#include <chrono>
+#include <algorithm>
 
 #include <fmt/format.h>
 #include <lua.hpp>
@@ -16,22 +16,12 @@ namespace limber {
 
 namespace {
 
-using Clock = std::chrono::steady_clock;
-
-constexpr auto kSlice = std::chrono::microseconds(100);
-constexpr double kGrowthFactor = 1.5;  // a cycle begins when the heap has grown by half and 512 kB
-constexpr double kGrowth = 512;
-
 void push(lua_State* L, std::string_view text) { lua_pushlstring(L, text.data(), text.size()); }
 
 std::string_view text_at(lua_State* L, int index) {
   std::size_t length = 0;
   const char* text = lua_tolstring(L, index, &length);
   return text == nullptr ? std::string_view("an error without text") : std::string_view(text, length);
-}
-
-double kilobytes(lua_State* L) {
-  return lua_gc(L, LUA_GCCOUNT, 0) + static_cast<double>(lua_gc(L, LUA_GCCOUNTB, 0)) / 1024;
 }
 
 std::string sender_text(const Origin& origin) {
@@ -43,19 +33,65 @@ std::string sender_text(const Origin& origin) {
   return std::string(kHands[static_cast<std::size_t>(origin.hand)]);
 }
 
+// function, arguments … -> whether the guarded call ended well
+template <Guard::Kind kind>
+int guarded(lua_State* L) {
+  Guard& guard = *static_cast<Guard*>(lua_touserdata(L, lua_upvalueindex(1)));
+  lua_pushboolean(L, guard.call(lua_gettop(L) - 1, 0, kind) ? 1 : 0);
+  return 1;
+}
+
+// a text in pieces: LuaJIT's compiler takes a while for a large one, and a hook can't stop it
+struct Pieces {
+  Guard& guard;
+  const char* text;
+  std::size_t left;
+  static const char* next(lua_State*, void* self, std::size_t* size) {
+    constexpr std::size_t kPiece = 512;
+    auto& pieces = *static_cast<Pieces*>(self);
+    if (pieces.guard.stop_asked()) pieces.left = 0;
+    *size = std::min(kPiece, pieces.left);
+    const char* const piece = pieces.text;
+    pieces.text += *size;
+    pieces.left -= *size;
+    return piece;
+  }
+};
+
+// with the libraries: opening that of the compiler switches it on
+lua_State* open_state() {
+  lua_State* const L = luaL_newstate();
+  luaL_openlibs(L);
+  return L;
+}
+
+// text, name, environment -> function, or nil and what is wrong; never bytecode
+int load_text(lua_State* L) {
+  std::size_t size = 0;
+  const char* const text = lua_tolstring(L, 1, &size);
+  Pieces pieces{*static_cast<Guard*>(lua_touserdata(L, lua_upvalueindex(1))), text, size};
+  if (lua_loadx(L, &Pieces::next, &pieces, lua_tostring(L, 2), "t") != 0) {
+    lua_pushnil(L);
+    lua_insert(L, -2);
+    return 2;
+  }
+  lua_pushvalue(L, 3);
+  lua_setfenv(L, -2);
+  return 1;
+}
+
 }  // namespace
 
 void Vm::Close::operator()(lua_State* state) const { lua_close(state); }
 
-Vm::Vm(ScriptContext& context) : state_(luaL_newstate()) {
-  lua_State* const L = state_.get();
-  luaL_openlibs(L);
+Vm::Vm(ScriptContext& context, VmMode wanted)
+    : state_(open_state()), guard_(state_.get(), context, context.options.limits) {
+  context.guard = &guard_;
   load_prelude(context);
   keep_entries();
   context.behaviors->open(*this);
-  lua_gc(L, LUA_GCCOLLECT, 0);
-  used_after_cycle_ = kilobytes(L);
-  lua_gc(L, LUA_GCSTOP, 0);
+  if (wanted == VmMode::live) guard_.arm();
+  collector_.emplace(state_.get(), guard_.memory());
 }
 
 Vm::~Vm() = default;
@@ -74,6 +110,14 @@ void Vm::load_prelude(ScriptContext& context) {
   lua_setfield(L, -2, "world_slot");
   lua_pushnumber(L, world.generation);
   lua_setfield(L, -2, "world_generation");
+  const auto guard_function = [&](const char* name, lua_CFunction function) {
+    lua_pushlightuserdata(L, &guard_);
+    lua_pushcclosure(L, function, 1);
+    lua_setfield(L, -2, name);
+  };
+  guard_function("guarded", guarded<Guard::Kind::call>);
+  guard_function("guarded_run", guarded<Guard::Kind::run>);
+  guard_function("load", load_text);
   for (const PreludeFile& file : prelude_files()) {
     const std::string name = fmt::format("=limber {}", file.name);
     int fault = luaL_loadbuffer(L, file.text.data(), file.text.size(), name.c_str());
@@ -102,7 +146,9 @@ void Vm::keep_entries() {
     tick_ = keep("tick");
     message_ = keep("message");
     names_ = keep("names");
-    handler_ = keep("handler");
+    const int handler = keep("handler");
+    const int stopped_fault = keep("stopped_fault");
+    guard_.use(handler, stopped_fault, keep("failed"));
     make_behavior_ = keep("make_behavior");
     renew_behavior_ = keep("renew_behavior");
     restore_behavior_ = keep("restore_behavior");
@@ -129,27 +175,27 @@ bool Vm::call(int arguments, int results) {
 
 Result<void> Vm::run(std::string_view text, std::string_view name) {
   lua_State* const L = state_.get();
-  lua_gc(L, LUA_GCRESTART, 0);
+  collector_->begin_run();
   lua_rawgeti(L, LUA_REGISTRYINDEX, run_);
   push(L, text);
   push(L, name);
-  Result<void> result;
-  if (!call(2, 1)) {
-    result = Error{fmt::format("{}: the scene could not be run", name)};
-  } else if (!lua_isnil(L, -1)) {
-    result = Error{std::string(text_at(L, -1))};
-  }
+  const bool called = call(2, 1);
+  const bool good = called && lua_toboolean(L, -1) != 0;
   lua_settop(L, 0);
-  lua_gc(L, LUA_GCSTOP, 0);
-  return result;
+  collector_->end_run();
+  if (good) return {};
+  if (!called) return Error{fmt::format("{}: the scene could not be run", name)};
+  return Error{guard_.fault().text};
 }
 
 void Vm::start() {
+  collector_->begin_calls();
   lua_rawgeti(state_.get(), LUA_REGISTRYINDEX, start_);
   call(0, 0);
 }
 
 void Vm::tick(double dt) {
+  collector_->begin_calls();
   lua_rawgeti(state_.get(), LUA_REGISTRYINDEX, tick_);
   lua_pushnumber(state_.get(), dt);
   call(1, 0);
@@ -177,6 +223,7 @@ bool Vm::message(const Message& message, const Origin& origin) {
         break;
     }
   }
+  collector_->begin_calls();
   const bool heard = call(static_cast<int>(message.args.size()) + 2, 1) && lua_toboolean(L, -1) != 0;
   lua_settop(L, 0);
   return heard;
@@ -191,21 +238,8 @@ std::string Vm::names() {
 }
 
 void Vm::collect_garbage() {
-  lua_State* const L = state_.get();
-  const double used = kilobytes(L);
-  const double limit = used_after_cycle_ * kGrowthFactor + kGrowth;
-  if (!collecting_ && used < limit) return;
-  collecting_ = true;
-  // a script that makes more than a slice can collect gets longer ones
-  const Clock::time_point end = Clock::now() + (used > 2 * limit ? 10 * kSlice : kSlice);
-  do {
-    if (lua_gc(L, LUA_GCSTEP, 1) != 0) {
-      collecting_ = false;
-      used_after_cycle_ = kilobytes(L);
-      break;
-    }
-  } while (Clock::now() < end);
-  lua_gc(L, LUA_GCSTOP, 0);  // a step starts the collector again
+  if (guard_.take_memory_stop()) collector_->collect_all();
+  collector_->after_tick();
 }
 
 }  // namespace limber

@@ -3,12 +3,15 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 #include <string_view>
 
 #include "base/id.h"
 #include "base/message.h"
 #include "base/result.h"
+#include "script/collector.h"
+#include "script/guard.h"
 #include "sim/behavior.h"
 
 struct lua_State;
@@ -19,8 +22,9 @@ struct ScriptContext;
 
 class Vm {
  public:
-  /// The context is what the prelude's calls work on; it outlives the Vm. [sim]
-  explicit Vm(ScriptContext& context);
+  /// The context is what the prelude's calls work on; it outlives the Vm. Live when that is wanted and no other Vm of
+  /// the process is. [sim]
+  Vm(ScriptContext& context, VmMode wanted);
   ~Vm();
   Vm(const Vm&) = delete;
   Vm& operator=(const Vm&) = delete;
@@ -43,6 +47,13 @@ class Vm {
   void drop_behavior(std::int32_t number);
   /// Every name that a scene sees, one a line: globals, library.member, thing.member, thing:method. [sim]
   std::string names();
+  /// Calls of scripts' code, from C++ too: the state's main thread is `state()`. [sim]
+  Guard& guard() { return guard_; }
+  lua_State* state() const { return state_.get(); }
+  VmMode mode() const { return guard_.mode(); }
+  /// Draft to live, once the other Vm has gone or was disarmed; false while it has not.
+  bool arm() { return guard_.arm(); }
+  void disarm() { guard_.disarm(); }
   /// Collects for about 100 µs when there is enough to collect. The collector rests at all other times. [sim]
   void collect_garbage();
 
@@ -57,12 +68,13 @@ class Vm {
     void operator()(lua_State* state) const;
   };
   std::unique_ptr<lua_State, Close> state_;
-  int run_ = -1;  // registry references of the prelude's entries
+  Guard guard_;
+  std::optional<Collector> collector_;  // once the prelude is in
+  int run_ = -1;                        // registry references of the prelude's entries
   int start_ = -1;
   int tick_ = -1;
   int message_ = -1;
   int names_ = -1;
-  int handler_ = -1;
   int make_behavior_ = -1;
   int renew_behavior_ = -1;
   int restore_behavior_ = -1;
@@ -72,8 +84,6 @@ class Vm {
   int behavior_start_ = -1;
   int behavior_step_ = -1;
   int behavior_migrate_ = -1;
-  double used_after_cycle_ = 0;  // kB
-  bool collecting_ = false;
 };
 
 }  // namespace limber

@@ -14,13 +14,6 @@ std::string string_at(lua_State* L, int index) {
   return text == nullptr ? std::string() : std::string(text, length);
 }
 
-std::string field(lua_State* L, const char* name) {
-  lua_getfield(L, -1, name);
-  std::string text = string_at(L, -1);
-  lua_pop(L, 1);
-  return text;
-}
-
 }  // namespace
 
 // puts the function of an instance and its self on the stack; false: it has no such function
@@ -37,14 +30,11 @@ bool Vm::push_behavior(int functions, std::int32_t number) {
 
 // the guarded call of what push_behavior put there, with arguments behind it
 BehaviorFault Vm::guarded_behavior(int arguments, int results) {
-  lua_State* const L = state_.get();
-  const int function = lua_gettop(L) - arguments;
-  lua_rawgeti(L, LUA_REGISTRYINDEX, handler_);
-  lua_insert(L, function);
-  if (lua_pcall(L, arguments, results, function) == 0) return {};
-  BehaviorFault fault{field(L, "text"), field(L, "file"), std::stoi("0" + field(L, "line"))};
-  lua_settop(L, 0);
-  return fault;
+  collector_->begin_calls();
+  if (guard_.call(arguments, results)) return {};
+  lua_settop(state_.get(), 0);
+  const ScriptFault& fault = guard_.fault();
+  return {fault.text, fault.file, fault.line};
 }
 
 std::int32_t Vm::make_behavior(std::int32_t file, NodeId id) {

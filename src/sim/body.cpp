@@ -100,6 +100,21 @@ Result<Pose> Body::link_pose(std::string_view name) const {
   return Error{fmt::format("body '{}' has no link '{}'{}", this->name(), name, name_hint(name, names))};
 }
 
+// before a guarded call changes it
+void Body::keep() {
+  if (world_.undo().active()) world_.undo().keep(*this);
+}
+
+void Body::note_moved() {
+  keep();
+  moved_ = true;
+}
+
+void Body::note_force() {
+  keep();
+  forced_ = true;
+}
+
 Result<Part*> Body::add_part(std::string name, Shape& shape, double mass, const Pose& pose) {
   if (const Result<void> free = world_.name_is_free(part_group_, "part", name); !free) return Error{free.error()};
   if (!is_finite(pose.position) || !is_finite(pose.rotation) || glm::dot(pose.rotation, pose.rotation) < 1e-18) {
@@ -128,6 +143,7 @@ Result<Part*> Body::add_part(std::string name, Shape& shape, double mass, const 
   }
   parts_.push_back(std::move(part));
   structure_++;
+  world_.undo().made_part(*this);
   return parts_.back().get();
 }
 
@@ -152,8 +168,11 @@ Result<Joint*> Body::add_joint(std::string name, Part& parent, Part& child, Join
   spec.type = type;
   spec.frame_in_parent = parent.pose().inverse() * frame;
   spec.frame_in_child = child.pose().inverse() * frame;
-  store().apply_marks();  // the parts stand where they were put before the joint reads its zero
+  // the parts stand where they were put before the joint reads its zero
+  parent.settle();
+  child.settle();
   joints_.push_back(std::make_unique<Joint>(*this, joint_group_, std::move(name), parent, child, spec));
+  world_.undo().made_joint(*this);
   joints_.back()->read_anew();
   structure_++;
   return joints_.back().get();
@@ -169,6 +188,7 @@ Result<Motor*> Body::add_motor(Joint& joint) {
   motors_.push_back(std::make_unique<Motor>(joint, motor_group_));
   if (joint.spec().mimic) followers_.push_back(motors_.back().get());
   structure_++;
+  world_.undo().made_motor(*this);
   return motors_.back().get();
 }
 
@@ -183,8 +203,8 @@ void Body::build(const std::shared_ptr<const BodyModel>& model, const BuildOptio
     const LinkModel& link = model->links[i];
     parts_.push_back(
         std::make_unique<Part>(*this, part_group_, link.name, geometries[i], link.inertial.mass, moved * link.start));
+    parts_.back()->settle();
   }
-  store().apply_marks();
   for (const JointModel& m : model->joints) {
     JointSpec spec{m.type, m.frame_in_parent, m.frame_in_child, m.limited, m.lower, m.upper, m.friction, {}};
     if (m.mimic >= 0)
@@ -229,9 +249,12 @@ void Body::build_copy(const Body& source) {
   }
   copy_values(source.id_, id_, table());
   planned_ = source.planned_;
-  store().apply_marks();
   // to the bit: what the store tells of a pose has gone through a quaternion
-  for (std::size_t i = 0; i < parts_.size(); i++) parts_[i]->stand_like(*source.parts_[i]);
+  for (std::size_t i = 0; i < parts_.size(); i++) {
+    parts_[i]->settle();
+    source.parts_[i]->settle();
+    parts_[i]->stand_like(*source.parts_[i]);
+  }
   for (const auto& from : source.joints_) {
     Part& parent = *find_part(from->parent().name());
     Part& child = *find_part(from->child().name());
@@ -252,6 +275,7 @@ Pose Body::pose() const { return parts_.empty() ? planned_ : root()->pose(); }
 
 void Body::set_pose(const Pose& pose) {
   if (parts_.empty()) {
+    keep();
     planned_ = pose;
     return;
   }
@@ -298,6 +322,7 @@ void Body::effect_self_collision() {
 }
 
 void Body::reset() {
+  keep();
   for (const auto& part : parts_) {
     part->set_pose(part->start_pose());
     part->set_velocity(Vec3(0), Vec3(0));
@@ -306,7 +331,7 @@ void Body::reset() {
   for (const auto& joint : joints_) joint->go_to_start();
   world_.behaviors().body_reset(*this);
   restored_once_ = false;
-  last_good_.clear();
+  good_poses_ = 0;
   set_enabled(true);
 }
 
@@ -329,6 +354,7 @@ void Body::push_forces() {
 void Body::take_good_pose() {
   last_good_.resize(parts_.size());
   for (std::size_t i = 0; i < parts_.size(); i++) last_good_[i] = parts_[i]->pose();
+  good_poses_ = parts_.size();
 }
 
 void Body::tell() {

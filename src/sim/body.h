@@ -1,6 +1,7 @@
 // Body: a named tree of parts, joints and motors; made by hand, from a model, or as a copy. [sim]
 #pragma once
 
+#include <cstdint>
 #include <memory>
 #include <span>
 #include <string>
@@ -76,9 +77,9 @@ class Body {
   void take_start_pose();
 
   /// A part's pose was set by hand: joints read it anew before the next step.
-  void note_moved() { moved_ = true; }
+  void note_moved();
   /// A force or impulse waits in a part for the next step.
-  void note_force() { forced_ = true; }
+  void note_force();
 
   void push_forces();
   void tell();
@@ -90,6 +91,8 @@ class Body {
   friend class World;
   friend class Behavior;
   friend class BehaviorList;
+  friend class WorldUndo;
+  void keep();
   void build(const std::shared_ptr<const BodyModel>& model, const BuildOptions& options);
   void build_motor(Joint& joint, const JointModel& m, bool servo);
   void build_copy(const Body& source);
@@ -128,6 +131,8 @@ class Body {
 
   // health: the pose after the last good tick, and whether it was needed already
   std::vector<Pose> last_good_;
+  std::size_t good_poses_ = 0;  // so many of them count
+  std::uint64_t kept_in_ = 0;   // the guarded call whose undo knows this body
   bool restored_once_ = false;
   bool broken_ = false;  // healed in this tick
 };

@@ -127,6 +127,8 @@ Vec3 Part::angular_velocity() const { return vec_at(body_.store().values(id_, *l
 
 void Part::set_pose(const Pose& pose) {
   Store& store = body_.store();
+  store.keep(id_, *live_rows().position);
+  store.keep(id_, *live_rows().rotation);
   put(store.tell(id_, *live_rows().position), pose.position);
   put(store.tell(id_, *live_rows().rotation), pose.rotation);
   store.mark(id_, *live_rows().position);
@@ -134,6 +136,8 @@ void Part::set_pose(const Pose& pose) {
 
 void Part::set_velocity(const Vec3& linear, const Vec3& angular) {
   Store& store = body_.store();
+  store.keep(id_, *live_rows().linear_velocity);
+  store.keep(id_, *live_rows().angular_velocity);
   put(store.tell(id_, *live_rows().linear_velocity), linear);
   put(store.tell(id_, *live_rows().angular_velocity), angular);
   store.mark(id_, *live_rows().linear_velocity);
@@ -148,17 +152,32 @@ void Part::stand_like(const Part& other) {
   rigid_->updateInertiaTensor();
 }
 
+void Part::keep() {
+  WorldUndo& undo = body_.world().undo();
+  if (undo.active()) undo.keep(*this);
+}
+
+void Part::settle() {
+  WorldUndo& undo = body_.world().undo();
+  if (!undo.active()) return body_.store().apply_marks();
+  undo.keep_motion(*this);
+  body_.store().apply_marks(id_);
+}
+
 void Part::apply_force(const Vec3& force) {
+  keep();
   force_ += force;
   body_.note_force();
 }
 
 void Part::apply_torque(const Vec3& torque) {
+  keep();
   torque_ += torque;
   body_.note_force();
 }
 
 void Part::apply_impulse(const Vec3& impulse) {
+  keep();
   impulse_ += impulse;
   body_.note_force();
 }
@@ -173,7 +192,10 @@ void Part::apply_impulse_at(const Vec3& impulse, const Vec3& at) {
   angular_impulse_ += glm::cross(at - center(), impulse);
 }
 
-void Part::clear_forces() { force_ = torque_ = impulse_ = angular_impulse_ = Vec3(0); }
+void Part::clear_forces() {
+  keep();
+  force_ = torque_ = impulse_ = angular_impulse_ = Vec3(0);
+}
 
 void Part::push_forces() {
   if (is_static_) return clear_forces();

@@ -1,6 +1,7 @@
 // Part: one rigid piece of a body. Users see its link frame; Bullet moves its centre-of-mass frame. [sim]
 #pragma once
 
+#include <cstdint>
 #include <memory>
 #include <string>
 
@@ -55,6 +56,10 @@ class Part {
   void apply_impulse(const Vec3& impulse);
   void apply_impulse_at(const Vec3& impulse, const Vec3& at);
   void clear_forces();
+  /// Before the forces that wait are changed, or its speed by a guarded call: lets the world's undo know them.
+  void keep();
+  /// Brings what was set into Bullet now, ahead of the next step.
+  void settle();
 
   /// Into Bullet's world and out of it; the body says when.
   void enter();
@@ -81,6 +86,7 @@ class Part {
   Result<void> act_impulse(std::span<const double> args);
   Result<void> act_torque(std::span<const double> args);
 
+  friend class WorldUndo;
   Body& body_;
   NodeId id_;
   NodeId shape_;
@@ -88,6 +94,7 @@ class Part {
   std::unique_ptr<btRigidBody> rigid_;
   Pose start_;
   Vec3 force_{0}, torque_{0}, impulse_{0}, angular_impulse_{0};
+  std::uint64_t kept_in_ = 0;  // the guarded call whose undo knows its forces
   bool is_static_ = false;
   bool reports_ = false;
 };

@@ -93,6 +93,7 @@ Result<void> World::name_is_free(NodeId group, std::string_view kind, std::strin
 Result<Body*> World::add_body(std::string name) {
   if (const Result<void> free = name_is_free(body_group_, "body", name); !free) return Error{free.error()};
   bodies_.push_back(std::make_unique<Body>(*this, body_group_, std::move(name)));
+  undo_.made_body();
   return bodies_.back().get();
 }
 
@@ -110,7 +111,10 @@ Result<Body*> World::copy_body(const Body& source, std::string name) {
 }
 
 void World::remove_body(Body& body) {
-  std::erase_if(bodies_, [&](const std::unique_ptr<Body>& b) { return b.get() == &body; });
+  const auto at = std::ranges::find_if(bodies_, [&](const std::unique_ptr<Body>& b) { return b.get() == &body; });
+  if (at == bodies_.end()) return;
+  if (undo_.active()) undo_.hide(std::move(*at), static_cast<std::size_t>(at - bodies_.begin()));
+  bodies_.erase(at);
 }
 
 Body* World::find_body(std::string_view name) const {
@@ -130,6 +134,7 @@ Result<Shape*> World::add_shape(std::string name, ShapeModel model) {
     return Error{fmt::format("shape '{}': {}", name, possible.error())};
   }
   shapes_.push_back(std::make_unique<Shape>(store_, shape_group_, std::move(name), std::move(model)));
+  undo_.made_shape();
   return shapes_.back().get();
 }
 
@@ -233,7 +238,7 @@ void World::after_internal_step(btDynamicsWorld* bullet, btScalar) {
 void World::heal(Body& body, const Part& part, const char* what) {
   for (std::size_t i = 0; i < body.parts_.size(); i++) {
     Part& each = *body.parts_[i];
-    each.set_pose(i < body.last_good_.size() ? body.last_good_[i] : each.start_pose());
+    each.set_pose(i < body.good_poses_ ? body.last_good_[i] : each.start_pose());
     each.set_velocity(Vec3(0), Vec3(0));
     each.effect_pose();
     each.effect_velocity();

@@ -15,6 +15,7 @@
 #include "sim/contacts.h"
 #include "sim/island_world.h"
 #include "sim/shape.h"
+#include "sim/world_undo.h"
 
 namespace limber {
 
@@ -43,6 +44,7 @@ class World {
   Result<Body*> add_body(const std::shared_ptr<const BodyModel>& model, std::string name, const BuildOptions& options);
   /// At the same place, with all values. Placed (set_pose) before the next step, it never collides with its original.
   Result<Body*> copy_body(const Body& source, std::string name);
+  /// In a guarded call it is out of sight at once, and goes when the call has ended well.
   void remove_body(Body& body);
   Body* find_body(std::string_view name) const;
   std::span<const std::unique_ptr<Body>> bodies() const { return bodies_; }
@@ -86,9 +88,12 @@ class World {
 
   IslandWorld& bullet() { return *bullet_; }
   Contacts& contact_log() { return contacts_; }
+  /// What takes a guarded call of a script back.
+  WorldUndo& undo() { return undo_; }
 
  private:
   friend class Body;
+  friend class WorldUndo;
   void effect_gravity();
   void effect_solver();
   void settle_healed();
@@ -109,6 +114,7 @@ class World {
   };
   std::unordered_map<const BodyModel*, ModelGeometry> geometries_;
   Contacts contacts_;
+  WorldUndo undo_{*this};
   TickTimes times_;
   std::uint64_t tick_ = 0;
   std::uint64_t health_events_ = 0;

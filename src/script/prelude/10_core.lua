@@ -26,6 +26,8 @@ local ctx = ffi.cast("void*", P.context)
 local answer = api.answer(ctx)
 local getinfo, format, sub, byte, concat = debug.getinfo, string.format, string.sub, string.byte, table.concat
 
+P.entry = {}       -- what C++ calls
+P.on_failure = {}  -- run after a guarded call that failed
 P.ffi, P.api, P.ctx, P.answer, P.view = ffi, api, ctx, answer, api.view(ctx)
 
 -- the text of the last answer

@@ -23,11 +23,11 @@ local thing
 local function intern(slot, generation)
   local class = by_table[view.slots[slot].table]
   local h = class.ctype(slot, generation)
-  handles[slot] = h
   api.name(ctx, slot, generation)
   names[h] = text()
   api.owner(ctx, slot, generation)
   if answer.count ~= 0 then owners[h] = thing(answer.slot, answer.generation) end
+  handles[slot] = h  -- known from here on: a script may be stopped at any line
   return h
 end
 

@@ -15,13 +15,15 @@ local function gather(list, entry)
   local slot, generation, kind = list.slot_, list.generation_, list.kind_
   local owner = thing(slot, generation)
   P.slot_of(owner)
-  entry.version, entry.items, entry.matched = api.structure(ctx), {}, {}
-  local count = api.list_count(ctx, slot, generation, kind)
+  local count, items = api.list_count(ctx, slot, generation, kind), {}
   if count < 0 then P.gone(owner) end
   for i = 0, count - 1 do
     api.list_item(ctx, slot, generation, kind, i)
-    entry.items[i + 1] = thing(answer.slot, answer.generation)
+    items[i + 1] = thing(answer.slot, answer.generation)
   end
+  -- the version last: a script may be stopped at any line
+  entry.items, entry.matched = items, {}
+  entry.version = api.structure(ctx)
   return entry
 end
 

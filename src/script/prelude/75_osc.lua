@@ -47,6 +47,7 @@ function osc.on(self, pattern, f)
   check(self, "on")
   want_address(pattern, "osc:on")
   P.want_function(f, "osc:on")
+  P.log(handlers)
   handlers[#handlers + 1] = { pattern = pattern, f = f }
   api.osc_handlers(ctx, #handlers)
 end
@@ -146,6 +147,8 @@ P.osc = setmetatable({}, {
   __metatable = "osc",
 })
 
+P.on_failure[#P.on_failure + 1] = function() api.osc_handlers(ctx, #handlers) end
+
 -- every handler whose pattern fits hears it; one that errs hears the next message again
 function P.entry.message(address, sender, ...)
   local heard = false
@@ -156,8 +159,7 @@ function P.entry.message(address, sender, ...)
     local pattern = entry.pattern
     if pattern == address or api.osc_matches(ctx, pattern, #pattern, address, #address) ~= 0 then
       heard = true
-      local ok, fault = xpcall(entry.f, P.handler, ...)
-      if not ok then P.report(fault) end
+      if not P.guarded(entry.f, ...) then api.report(ctx) end
     end
   end
   address_now, sender_now = outer_address, outer_sender

@@ -106,7 +106,7 @@ local function run(type)
     given = declared
     return declared
   end
-  local chunk, fault = load(type.text, "@" .. type.shown, "t", env)
+  local chunk, fault = P.load(type.text, "@" .. type.shown, env)
   if not chunk then error(fault, 0) end
   returned = chunk()
   env.behavior = nil

@@ -1,5 +1,6 @@
 -- Errors as a person reads them: file:line: what, the source line, the way there through the scripts.
 local P = ...
+local api, ctx = P.api, P.ctx
 local getinfo, format, sub, find = debug.getinfo, string.format, string.sub, string.find
 
 -- text of every script by the name that messages show
@@ -77,8 +78,9 @@ local function fault_of(file, line, message, trace)
   return { file = file or P.main or "", line = line or 0, text = text }
 end
 
--- the message handler of every protected call; what is thrown may be anything, and its __tostring is never called
+-- the message handler of every guarded call; what is thrown may be anything, and its __tostring is never called
 function P.handler(thrown)
+  if api.stopped(ctx) ~= 0 then return P.stopped_fault(traceback(3)) end
   if type(thrown) ~= "string" then
     thrown = type(thrown) == "number" and tostring(thrown) or format("an error that is no text but a %s", type(thrown))
   end
@@ -87,8 +89,15 @@ function P.handler(thrown)
   return fault_of(file, line, explain(message), traceback(3))
 end
 
--- a script that can't be compiled
-function P.syntax_fault(message)
-  local file, line, rest = place_in(message)
-  return fault_of(file, line, rest, {})
+-- of a call that was stopped; it may have caught that itself, and nothing came out
+function P.stopped_fault(trace)
+  api.stopped(ctx)
+  local file, line = P.text(), tonumber(P.answer.number[0])
+  api.stop_text(ctx)
+  return fault_of(#file > 0 and file or nil, line, P.text(), trace or {})
+end
+
+P.entry.handler, P.entry.stopped_fault = P.handler, P.stopped_fault
+function P.entry.failed()
+  for _, f in ipairs(P.on_failure) do f() end
 end

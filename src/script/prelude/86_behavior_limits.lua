@@ -17,4 +17,3 @@ for _, name in ipairs(P.sorted_keys(P.classes)) do
   end
 end
 for _, key in ipairs { "on", "listen", "stream_to" } do keep_to_scene(P.osc_functions, key, "osc:" .. key) end
-P.entry.handler = P.handler

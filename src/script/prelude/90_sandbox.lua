@@ -2,7 +2,7 @@
 local P = ...
 local ffi, api, ctx, istype = P.ffi, P.api, P.ctx, P.ffi.istype
 local fail, describe = P.fail, P.describe
-local native = { tostring = tostring, pcall = pcall, load = load, format = string.format, gsub = string.gsub,
+local native = { tostring = tostring, pcall = pcall, format = string.format, gsub = string.gsub,
   sort = table.sort, resume = coroutine.resume, create = coroutine.create, getmetatable = debug.getmetatable }
 
 -- tables, functions and coroutines have no address in texts: it would differ from run to run
@@ -176,7 +176,7 @@ local function add_functions(env)
     if type(text) ~= "string" then fail("load takes text, not %s", describe(text)) end
     if #text > 2 ^ 20 then return nil, "load takes up to 1 MB of text" end
     name = type(name) == "string" and name:gsub("^[@=]", "") or "load"
-    return native.load(text, "@" .. name, "t", of or env)
+    return P.load(text, "@" .. name, of or env)
   end
   function env.loadstring(text, name) return env.load(text, name) end
   function env.collectgarbage(what)
@@ -209,7 +209,7 @@ local function make_require(env, file)
     if api.read_lib(ctx, file, name, #name) ~= 0 then fail("%s", P.text()) end
     local shown, text = P.text():match("^(.-)\n(.*)$")
     P.sources[shown] = text
-    local chunk, fault = native.load(text, "@" .. shown, "t", env)
+    local chunk, fault = P.load(text, "@" .. shown, env)
     if not chunk then error(fault, 0) end
     loading[#loading + 1] = name
     local ok, result = native.pcall(chunk, name)
@@ -245,20 +245,16 @@ function P.make_env(file)
   })
 end
 
--- runs a scene's file; the fault's text, file and line when it fails
+local function compile_and_run(text, name)
+  local chunk, message = P.load(text, "@" .. name, P.make_env(-1))
+  if not chunk then error(message, 0) end
+  chunk()
+end
+
+-- runs a scene's file; false when it fails
 function P.entry.run(text, name)
   P.sources[name], P.main = text, name
-  local chunk, message = native.load(text, "@" .. name, "t", P.make_env(-1))
-  local fault
-  if chunk then
-    local ok, caught = xpcall(chunk, P.handler)
-    if ok then return nil end
-    fault = caught
-  else
-    fault = P.syntax_fault(message)
-  end
-  if type(fault) ~= "table" then fault = { text = native.tostring(fault), file = name, line = 0 } end
-  return fault.text, fault.file, fault.line
+  return P.guarded_run(compile_and_run, text, name)
 end
 
 -- every name that a scene sees, one a line: globals, members of libraries, then members and methods of things
