@@ -55,6 +55,7 @@ void ScriptContext::begin_call() {
 void ScriptContext::end_call(bool good) {
   if (good) {
     world.undo().end();
+    forces.apply(world.store());
     for (Held& h : held) {
       if (h.way == Way::all) {
         host.send(std::move(h.message));
@@ -66,6 +67,7 @@ void ScriptContext::end_call(bool good) {
     }
     if (reset_wanted) host.ask_reset();
   } else {
+    forces.clear();
     world.undo().take_back();
     random = random_before_;
     seeded_with = seeded_before_;

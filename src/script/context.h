@@ -13,6 +13,7 @@
 #include "model/urdf_import.h"
 #include "script/c_api.h"
 #include "script/files.h"
+#include "script/force_queue.h"
 #include "script/host.h"
 #include "script/params_node.h"
 #include "script/scene_options.h"
@@ -69,6 +70,7 @@ struct ScriptContext {
   };
   std::vector<Held> held;
   bool reset_wanted = false;
+  ForceQueue forces;
   /// From here on everything that a script does is kept for the undo.
   void begin_call();
   /// A good one's messages go out; a bad one is taken back, its random draws too.

@@ -46,7 +46,7 @@ function P.answered()
 end
 
 -- another class of handles; what one of its handles is called, and whose it is
-function P.add_class(class) by_ctype[tonumber(class.ctype)] = class end
+function P.add_handles(class) by_ctype[tonumber(class.ctype)] = class end
 function P.introduce(h, name, owner) names[h], owners[h] = name, owner end
 
 local function class_of(value)

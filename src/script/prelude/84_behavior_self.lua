@@ -89,7 +89,7 @@ end
 
 local setters = {
   state = function(h, value)
-    if type(value) ~= "table" then fail("self.state is a table, not %s", describe(value)) end
+    if type(value) ~= "table" then fail("%s: state is a table, not %s", P.label(h), describe(value)) end
     instance_of(h).state = value
   end,
 }
@@ -108,7 +108,7 @@ end
 function P.make_self(of)
   local ctype = ffi.typeof("struct { const int32_t slot_, generation_, number_; }")
   local class = { name = "behavior", table = of.table, ctype = ctype, getters = {}, setters = {}, methods = {}, rows = {} }
-  P.add_class(class)
+  P.add_handles(class)
   P.derive(class)
   class.methods.remove = nil
   local intervals = {}  -- rows by name, for due
