@@ -88,4 +88,31 @@ std::int32_t behavior_due(void* c, std::int32_t slot, std::int32_t generation, s
   return behavior->due(behavior->type().table->row(static_cast<std::uint32_t>(row))) ? 1 : 0;
 }
 
+LimberWalk* walks(void* c) { return context_of(c).walks.data(); }
+
+std::int32_t neighbors(void* c, std::int32_t slot, std::int32_t generation, std::int32_t part_slot,
+                       std::int32_t part_generation, double radius, std::int32_t number) {
+  ScriptContext& context = context_of(c);
+  const Behavior* behavior = behavior_of(context, slot, generation);
+  const Part* part = thing_of<Part>(context, id_of(part_slot, part_generation));
+  if (behavior == nullptr || part == nullptr) return kGone;
+  const auto at = static_cast<std::size_t>(number);
+  std::vector<Neighbor>& found = context.found[at];
+  behavior->group()->neighbors().near(*part, radius, found);
+  LimberWalk& walk = context.walks[at];
+  walk = {reinterpret_cast<const LimberNeighbor*>(found.data()), 0, static_cast<std::int32_t>(found.size()),
+          walk.serial + 1};
+  context.answer.slot = static_cast<std::int32_t>(behavior->group()->id().slot);
+  context.answer.generation = static_cast<std::int32_t>(context.world.store().structure_version());
+  return kOk;
+}
+
+std::int32_t neighbor_part(void* c, std::int32_t slot, std::int32_t generation, std::int32_t index) {
+  ScriptContext& context = context_of(c);
+  const Behavior* behavior = behavior_of(context, slot, generation);
+  if (behavior == nullptr) return kGone;
+  if (index == -2) return static_cast<std::int32_t>(behavior->group()->id().slot);
+  return item(context, behavior->group()->neighbor_parts(), index);
+}
+
 }  // namespace limber::calls

@@ -1,6 +1,7 @@
 // ScriptContext: what the functions behind the door work on; one for each scene. [sim]
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <map>
 #include <memory>
@@ -17,6 +18,7 @@
 #include "script/host.h"
 #include "script/params_node.h"
 #include "script/scene_options.h"
+#include "sim/neighbors.h"
 #include "sim/world.h"
 
 namespace limber {
@@ -51,6 +53,11 @@ struct ScriptContext {
   BuildOptions build;
   Message message;
   std::vector<Row> param_rows;
+
+  // walks over neighbours, several at a time where loops stand inside each other
+  static constexpr std::size_t kWalks = 16;
+  std::array<LimberWalk, kWalks> walks{};
+  std::array<std::vector<Neighbor>, kWalks> found;
 
   std::map<std::string, bool> loaded_files;  ///< URDF files that the run loaded: callbacks may load them again.
   OscPlan plan;

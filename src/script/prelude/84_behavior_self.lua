@@ -54,20 +54,33 @@ function P.ipairs(t)
   return ipairs_of_things(t)
 end
 
-local function make_list(instance, name)
+local function keep_list(instance, name, items)
   local number = #free > 0 and table.remove(free) or #lists + 1
-  lists[number], list_names[number] = gather(instance.handle, kinds[name]), name
+  lists[number], list_names[number] = items, name
   instance[name] = S(number)
   return instance[name]
 end
 
+local function drop_list(instance, name)
+  if not instance[name] then return end
+  local number = instance[name].number_
+  lists[number], free[#free + 1], instance[name] = {}, number, nil
+end
+
 local function drop_lists(instance)
-  for name in pairs(kinds) do
-    if instance[name] then
-      local number = instance[name].number_
-      lists[number], free[#free + 1], instance[name] = {}, number, nil
-    end
+  for name in pairs(kinds) do drop_list(instance, name) end
+  drop_list(instance, "neighbor_parts")
+end
+
+-- a group's neighbours come and go without a start of its members
+local function neighbor_parts(h)
+  local instance, version = instance_of(h), api.structure(ctx)
+  if not instance.neighbor_parts or instance.structure ~= version then
+    drop_list(instance, "neighbor_parts")
+    keep_list(instance, "neighbor_parts", P.neighbor_parts(h, instance.body))
+    instance.structure = version
   end
+  return instance.neighbor_parts
 end
 
 -- what every `self` has beside its parameters
@@ -83,7 +96,7 @@ local getters = {
 for name in pairs(kinds) do
   getters[name] = function(h)
     local instance = instance_of(h)
-    return instance[name] or make_list(instance, name)
+    return instance[name] or keep_list(instance, name, gather(h, kinds[name]))
   end
 end
 
@@ -123,6 +136,10 @@ function P.make_self(of)
     local due = api.behavior_due(ctx, h.slot_, h.generation_, row)
     if due < 0 then P.gone(h) end
     return due == 1
+  end
+  if of.is_group then
+    P.neighbor_members(class)
+    class.getters.neighbor_parts = neighbor_parts
   end
   P.finish(class)
   of.class = class
