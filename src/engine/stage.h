@@ -22,6 +22,11 @@ struct Stage {
 
   /// Runs the scene's file; without one the world stays empty.
   Result<void> run(const std::string& file, ScriptHost& host, const SceneOptions& options) {
+    world.behaviors().on_fault([&host](const Behavior& behavior) {
+      const BehaviorFault& fault = behavior.fault();
+      const std::string path = behavior.store().path(behavior.id());
+      host.script_error(fault.file.empty() ? path : fault.file, fault.line, path + ": " + fault.text);
+    });
     if (file.empty()) return {};
     scene = std::make_unique<Scene>(world, host, options);
     return scene->run(file);

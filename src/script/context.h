@@ -1,6 +1,7 @@
 // ScriptContext: what the functions behind the door work on; one for each scene. [sim]
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <map>
 #include <memory>
@@ -46,6 +47,7 @@ struct ScriptContext {
   BuildOptions build;
   Message message;
   std::vector<Row> param_rows;
+  std::array<Selection, 5> selections;  ///< Of parts, joints, motors, bodies, neighbour parts.
 
   std::map<std::string, bool> loaded_files;  ///< URDF files that the run loaded: callbacks may load them again.
   OscPlan plan;
@@ -77,6 +79,9 @@ T* thing_of(const ScriptContext& c, NodeId id) {
   if (!c.alive(id) || &c.world.store().table(id) != &T::table()) return nullptr;
   return static_cast<T*>(c.world.store().thing(id));
 }
+/// The behaviour, or the group, of an id, when it is alive and one, else null.
+Behavior* behavior_of(const ScriptContext& c, NodeId id);
+BehaviorGroup* group_of(const ScriptContext& c, NodeId id);
 /// How errors name a thing: "motor 'arm/joint_2'", "body 'arm'", "sim".
 std::string label_of(const ScriptContext& c, NodeId id);
 

@@ -320,10 +320,8 @@ void Body::settle_joints() {
   for (const auto& joint : joints_) joint->read_anew();
 }
 
-void Body::push_forces() {
+void Body::follow_leaders() {
   for (Motor* motor : followers_) motor->follow();
-  if (!std::exchange(forced_, false)) return;
-  for (const auto& part : parts_) part->push_forces();
 }
 
 void Body::take_good_pose() {
