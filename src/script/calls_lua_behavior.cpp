@@ -13,12 +13,6 @@ namespace limber::calls {
 
 namespace {
 
-// `self` handles are made by the prelude alone, so one whose generation fits is a behaviour
-Behavior* behavior_of(const ScriptContext& c, std::int32_t slot, std::int32_t generation) {
-  const NodeId id = id_of(slot, generation);
-  return c.alive(id) ? static_cast<Behavior*>(c.world.store().thing(id)) : nullptr;
-}
-
 template <class T>
 std::int32_t item(ScriptContext& c, std::span<T* const> list, std::int32_t index) {
   if (index < 0) return static_cast<std::int32_t>(list.size());
@@ -67,7 +61,7 @@ void in_behavior(void* c, std::int32_t on) { context_of(c).answer.in_behavior = 
 std::int32_t behavior_item(void* c, std::int32_t slot, std::int32_t generation, std::int32_t kind,
                            std::int32_t index) {
   ScriptContext& context = context_of(c);
-  const Behavior* behavior = behavior_of(context, slot, generation);
+  const Behavior* behavior = behavior_of(context, id_of(slot, generation));
   if (behavior == nullptr) return kGone;
   if (kind == 1) return item(context, behavior->parts(), index);
   if (kind == 2) return item(context, behavior->joints(), index);
@@ -76,14 +70,14 @@ std::int32_t behavior_item(void* c, std::int32_t slot, std::int32_t generation, 
 
 std::int32_t behavior_body(void* c, std::int32_t slot, std::int32_t generation) {
   ScriptContext& context = context_of(c);
-  const Behavior* behavior = behavior_of(context, slot, generation);
+  const Behavior* behavior = behavior_of(context, id_of(slot, generation));
   if (behavior == nullptr) return kGone;
   return context.tell(behavior->body().id());
 }
 
 std::int32_t behavior_due(void* c, std::int32_t slot, std::int32_t generation, std::int32_t row) {
   const ScriptContext& context = context_of(c);
-  Behavior* behavior = behavior_of(context, slot, generation);
+  Behavior* behavior = behavior_of(context, id_of(slot, generation));
   if (behavior == nullptr) return kGone;
   return behavior->due(behavior->type().table->row(static_cast<std::uint32_t>(row))) ? 1 : 0;
 }
@@ -93,7 +87,7 @@ LimberWalk* walks(void* c) { return context_of(c).walks.data(); }
 std::int32_t neighbors(void* c, std::int32_t slot, std::int32_t generation, std::int32_t part_slot,
                        std::int32_t part_generation, double radius, std::int32_t number) {
   ScriptContext& context = context_of(c);
-  const Behavior* behavior = behavior_of(context, slot, generation);
+  const Behavior* behavior = behavior_of(context, id_of(slot, generation));
   const Part* part = thing_of<Part>(context, id_of(part_slot, part_generation));
   if (behavior == nullptr || part == nullptr) return kGone;
   const auto at = static_cast<std::size_t>(number);
@@ -109,7 +103,7 @@ std::int32_t neighbors(void* c, std::int32_t slot, std::int32_t generation, std:
 
 std::int32_t neighbor_part(void* c, std::int32_t slot, std::int32_t generation, std::int32_t index) {
   ScriptContext& context = context_of(c);
-  const Behavior* behavior = behavior_of(context, slot, generation);
+  const Behavior* behavior = behavior_of(context, id_of(slot, generation));
   if (behavior == nullptr) return kGone;
   if (index == -2) return static_cast<std::int32_t>(behavior->group()->id().slot);
   return item(context, behavior->group()->neighbor_parts(), index);

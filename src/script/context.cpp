@@ -55,7 +55,7 @@ void ScriptContext::begin_call() {
 void ScriptContext::end_call(bool good) {
   if (good) {
     world.undo().end();
-    forces.apply(world.store());
+    forces.apply(world.loads());
     for (Held& h : held) {
       if (h.way == Way::all) {
         host.send(std::move(h.message));
@@ -75,6 +75,19 @@ void ScriptContext::end_call(bool good) {
   held.clear();
 }
 
+Behavior* behavior_of(const ScriptContext& c, NodeId id) {
+  const Store& store = c.world.store();
+  if (!c.alive(id) || store.table(id).name() != "behavior") return nullptr;
+  return static_cast<Behavior*>(store.thing(id));
+}
+
+BehaviorGroup* group_of(const ScriptContext& c, NodeId id) {
+  const Store& store = c.world.store();
+  // Store's own nodes without rows are called groups too
+  if (!c.alive(id) || store.is_group(id) || store.table(id).name() != "group") return nullptr;
+  return static_cast<BehaviorGroup*>(store.thing(id));
+}
+
 std::string label_of(const ScriptContext& c, NodeId id) {
   const Store& store = c.world.store();
   if (!store.alive(id)) return "a thing that no longer exists";
@@ -82,7 +95,9 @@ std::string label_of(const ScriptContext& c, NodeId id) {
   if (table == &World::table()) return "sim";
   const std::string& name = store.name(id);
   if (table == &Body::table() || table == &Shape::table()) return fmt::format("{} '{}'", table->name(), name);
-  if (table == &Part::table() || table == &Joint::table() || table == &Motor::table()) {
+  if (group_of(c, id) != nullptr) return fmt::format("group '{}'", name);
+  if (table == &Part::table() || table == &Joint::table() || table == &Motor::table() ||
+      behavior_of(c, id) != nullptr) {
     return fmt::format("{} '{}/{}'", table->name(), store.name(store.parent(store.parent(id))), name);
   }
   return "params";

@@ -53,6 +53,7 @@ struct ScriptContext {
   BuildOptions build;
   Message message;
   std::vector<Row> param_rows;
+  std::array<Selection, 5> selections;  ///< Of parts, joints, motors, bodies, neighbour parts.
 
   // walks over neighbours, several at a time where loops stand inside each other
   static constexpr std::size_t kWalks = 16;
@@ -110,6 +111,9 @@ T* thing_of(const ScriptContext& c, NodeId id) {
   if (!c.alive(id) || &c.world.store().table(id) != &T::table()) return nullptr;
   return static_cast<T*>(c.world.store().thing(id));
 }
+/// The behaviour, or the group, of an id, when it is alive and one, else null.
+Behavior* behavior_of(const ScriptContext& c, NodeId id);
+BehaviorGroup* group_of(const ScriptContext& c, NodeId id);
 /// How errors name a thing: "motor 'arm/joint_2'", "body 'arm'", "sim".
 std::string label_of(const ScriptContext& c, NodeId id);
 

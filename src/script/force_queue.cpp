@@ -1,10 +1,10 @@
 // From the queue to the parts.
 #include "script/force_queue.h"
 
+#include <span>
 #include <utility>
 
-#include "params/store.h"
-#include "sim/part.h"
+#include "sim/world.h"
 
 namespace limber {
 
@@ -23,20 +23,22 @@ bool ForceQueue::grow() {
   return true;
 }
 
-void ForceQueue::apply(const Store& store) {
+void ForceQueue::apply(PartLoads& loads) {
   const auto count = static_cast<std::size_t>(std::exchange(view_.count, 0));
-  const NodeSlot* const slots = store.view()->slots;
   for (std::size_t i = 0; i < count; i++) {
     const LimberForce& f = entries_[i];
-    const auto slot = static_cast<std::uint32_t>(f.slot);
-    Part* const part = static_cast<Part*>(store.thing({slot, slots[slot].generation}));
-    if (part == nullptr) continue;
-    if (f.turns == 0) {
-      part->apply_force({f.x, f.y, f.z});
-    } else {
-      part->apply_torque({f.x, f.y, f.z});
-    }
+    PartLoads::Load* const load = loads.load_of_slot(static_cast<std::uint32_t>(f.slot));
+    if (load != nullptr) (f.turns == 0 ? load->force : load->torque) += Vec3(f.x, f.y, f.z);
   }
+}
+
+void ForceQueue::apply_kept(World& world) {
+  for (const LimberForce& f : std::span(entries_).first(static_cast<std::size_t>(view_.count))) {
+    const std::uint32_t slot = static_cast<std::uint32_t>(f.slot);
+    PartLoads::Load* const load = world.loads().load_of_slot(slot);
+    if (load != nullptr) load->part->keep();
+  }
+  apply(world.loads());
 }
 
 }  // namespace limber

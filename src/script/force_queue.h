@@ -8,7 +8,8 @@
 
 namespace limber {
 
-class Store;
+class PartLoads;
+class World;
 
 class ForceQueue {
  public:
@@ -18,7 +19,9 @@ class ForceQueue {
   /// Room for more; false: there can't be, apply() makes some.
   bool grow();
   /// Gives all to their parts, in the order in which they came. Parts that are gone are passed over.
-  void apply(const Store& store);
+  void apply(PartLoads& loads);
+  /// The same in the middle of a call, which may still fail.
+  void apply_kept(World& world);
   void clear() { view_.count = 0; }
 
  private:

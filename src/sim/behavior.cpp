@@ -98,6 +98,10 @@ void Behavior::read_time(double* out) const { out[0] = microseconds(); }
 
 void Behavior::active_written(void* thing, const Row&) { static_cast<Behavior*>(thing)->fault_ = {}; }
 
+void Behavior::call_attention() {
+  if (group_ != nullptr) group_->attention_ = true;
+}
+
 Result<void> Behavior::act_remove(std::span<const double>) {
   world().behaviors().remove(*this);
   return {};
@@ -105,7 +109,14 @@ Result<void> Behavior::act_remove(std::span<const double>) {
 
 void Behavior::fail(BehaviorFault fault) {
   fault_ = std::move(fault);
+  call_attention();
   world().behaviors().say_fault(*this);
+}
+
+Vec3 Behavior::random_between(const Vec3& a, const Vec3& b) {
+  const double x = random_between(a.x, b.x);
+  const double y = random_between(a.y, b.y);
+  return {x, y, random_between(a.z, b.z)};
 }
 
 bool Behavior::due(const Row& row) {
@@ -176,6 +187,7 @@ Result<void> Behavior::resolve() {
 }
 
 void Behavior::restart() {
+  call_attention();
   fresh_ = true;
   seeded_with_ = kNoSeed;
 }

@@ -105,6 +105,9 @@ class Behavior {
     const double* const v = values(parameter);
     return {v[0], v[1], v[2]};
   }
+  /// A draw between two values, or in the box between two corners, x first; either may be the larger.
+  double random_between(double a, double b) { return random_.uniform(a, b); }
+  Vec3 random_between(const Vec3& a, const Vec3& b);
   bool due(std::uint32_t parameter) { return due(type_->table->row(kCommonBehaviorRows + parameter)); }
   const double* values(std::uint32_t parameter) const;
 
@@ -125,6 +128,9 @@ class Behavior {
   Result<void> resolve();
   void restart();
   void prepare();
+  /// Whether it starts or rests with an error: its group then looks at each member by itself.
+  bool needs_attention() const { return fresh_ || seeded_with_ == kNoSeed || !fault_.text.empty(); }
+  void call_attention();
   void read_time(double* out) const;
   Result<void> act_remove(std::span<const double> args);
   static void active_written(void* thing, const Row& row);

@@ -124,16 +124,17 @@ Result<void> BehaviorGroup::names_exist() const {
 }
 
 Result<void> BehaviorGroup::follow() {
-  neighbor_parts_.clear();
+  std::vector<Part*> near;
   const Selection& neighbors = neighbor_selection();
   for (const auto& body : world_.bodies()) {
     if (!means(*body)) continue;
     for (const auto& part : body->parts()) {
-      if (neighbors.means(part->name(), !part->is_static())) neighbor_parts_.push_back(part.get());
+      if (neighbors.means(part->name(), !part->is_static())) near.push_back(part.get());
     }
     if (member_of(*body) != nullptr || !has_any(*body, setup_.parts)) continue;
     if (const Result<Behavior*> member = join(*body); !member) return Error{member.error()};
   }
+  if (neighbors_ == nullptr || !neighbors_->holds(near)) neighbors_ = world_.behaviors().neighbor_set(std::move(near));
   return {};
 }
 
@@ -152,18 +153,53 @@ void BehaviorGroup::renew(const std::shared_ptr<const BehaviorType>& type) {
   type_ = type;
 }
 
-void BehaviorGroup::forget_parts_of(const Body& body) {
-  std::erase_if(neighbor_parts_, [&](const Part* part) { return &part->body() == &body; });
+void BehaviorGroup::lay_out() {
+  static const std::uint32_t enabled = Body::table().at("enabled").offset;
+  static const std::uint32_t mass = Part::table().at("mass").offset;
+  laid_out_ = true;
+  attention_ = true;
+  const NodeSlot* const slots = world_.store().view()->slots;
+  const std::uint32_t active = type_->table->row(0).width;
+  layout_ = {};
+  for (const auto& member : members_) {
+    layout_.values.push_back(slots[member->id().slot].kept + active);
+    layout_.enabled.push_back(slots[member->body().id().slot].live + enabled);
+    layout_.first_part.push_back(static_cast<std::uint32_t>(layout_.parts.size()));
+    for (Part* part : member->parts()) {
+      layout_.parts.push_back(part);
+      const Vec3 inertia = part->geometry()->unit_inertia;
+      layout_.least_inertia.push_back(std::min({inertia.x, inertia.y, inertia.z}));
+      layout_.load.push_back(part->load_place());
+      layout_.mass.push_back(slots[part->id().slot].kept + mass);
+    }
+  }
+  layout_.first_part.push_back(static_cast<std::uint32_t>(layout_.parts.size()));
+}
+
+// the slow way, in a step in which some start or rest with an error
+void BehaviorGroup::prepare_members() {
+  attention_ = false;
+  for (std::size_t i = 0; i < members_.size(); i++) {
+    Behavior& member = *members_[i];
+    if (member.runs()) member.prepare();
+    attention_ = attention_ || member.needs_attention();
+  }
 }
 
 void BehaviorGroup::step(double dt) {
   const double start = clock_seconds();
+  if (!laid_out_) lay_out();
+  const std::uint64_t seed = world_.seed();
+  if (attention_ || std::exchange(seed_, seed) != seed) prepare_members();
   running_.clear();
-  for (std::size_t i = 0; i < members_.size(); i++) {
-    Behavior& member = *members_[i];
-    if (!member.runs()) continue;
-    member.prepare();
-    if (member.runs()) running_.push_back(&member);
+  running_numbers_.clear();
+  const double* const kept = world_.store().kept().data();
+  const double* const live = world_.store().live().data();
+  for (std::uint32_t i = 0; i < layout_.values.size(); i++) {
+    if (kept[layout_.values[i] - 1] == 0 || live[layout_.enabled[i]] == 0) continue;
+    if (attention_ && !members_[i]->runs()) continue;
+    running_.push_back(members_[i].get());
+    running_numbers_.push_back(i);
   }
   if (!running_.empty()) running_.front()->step_group(running_, dt);
   seconds_ = clock_seconds() - start;

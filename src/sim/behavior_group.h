@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "sim/behavior.h"
+#include "sim/neighbors.h"
 
 namespace limber {
 
@@ -37,7 +38,21 @@ class BehaviorGroup {
   /// In the order in which they became members.
   std::span<const std::unique_ptr<Behavior>> members() const { return members_; }
   /// Parts that members look at, in stream order; a member leaves out those of its own body.
-  std::span<Part* const> neighbor_parts() const { return neighbor_parts_; }
+  std::span<Part* const> neighbor_parts() const { return neighbors_->parts(); }
+  NeighborSet& neighbors() const { return *neighbors_; }
+  /// For types that step all members at once, laid out in a row: which members run in this step, and of each of all
+  /// members where its parameters' numbers and its parts are.
+  struct Layout {
+    std::vector<std::uint32_t> values;      ///< In Store::kept(): of the first parameter, the others follow.
+    std::vector<std::uint32_t> first_part;  ///< In `parts`; one more behind the last.
+    std::vector<Part*> parts;
+    std::vector<std::uint32_t> load;     ///< In World::loads(), of each of `parts`.
+    std::vector<std::uint32_t> mass;     ///< In Store::kept(), of each of `parts`.
+    std::vector<double> least_inertia;   ///< Its least principal moment for 1 kg, m², of each of `parts`.
+    std::vector<std::uint32_t> enabled;  ///< In Store::live(): its body's row.
+  };
+  const Layout& layout() const { return layout_; }
+  std::span<const std::uint32_t> running() const { return running_numbers_; }
   /// Seconds of the last tick, spread over the members.
   double seconds_a_member() const;
 
@@ -58,7 +73,8 @@ class BehaviorGroup {
   Result<Behavior*> join(Body& body);
   /// Takes the type that now has its type's name; members are renewed by the list.
   void renew(const std::shared_ptr<const BehaviorType>& type);
-  void forget_parts_of(const Body& body);
+  void lay_out();
+  void prepare_members();
   void step(double dt);
   Result<void> names_exist() const;
   void read_time(double* out) const;
@@ -70,9 +86,14 @@ class BehaviorGroup {
   GroupSetup setup_;
   std::shared_ptr<const BehaviorSetup> member_setup_;
   std::vector<std::unique_ptr<Behavior>> members_;
-  std::vector<Behavior*> running_;  // scratch of a tick
-  std::vector<NodeId> left_;        // bodies whose instance was taken away by hand
-  std::vector<Part*> neighbor_parts_;
+  Layout layout_;
+  bool laid_out_ = false;                       // false: members or their parts have changed since
+  bool attention_ = true;                       // a member starts, or has an error
+  std::uint64_t seed_ = Behavior::kNoSeed;      // of the step before
+  std::vector<Behavior*> running_;              // members that run in this step
+  std::vector<std::uint32_t> running_numbers_;  // their places in members_
+  std::vector<NodeId> left_;                    // bodies whose instance was taken away by hand
+  std::shared_ptr<NeighborSet> neighbors_;
   double seconds_ = 0;  // of the last tick
 };
 

@@ -117,6 +117,7 @@ void BehaviorList::remove(Behavior& behavior) {
     const auto at = from_behind(group->members_, [&](const auto& member) { return member.get() == &behavior; });
     bury(std::move(*at));
     group->members_.erase(at);
+    group->laid_out_ = false;
     return;
   }
   const auto at = from_behind(entries_, [&](const Entry& e) { return e.single.get() == &behavior; });
@@ -173,7 +174,7 @@ void BehaviorList::body_gone(Body& body) {
   for (const Entry& entry : entries_) {
     if (entry.group == nullptr) continue;
     std::erase(entry.group->left_, body.id());
-    entry.group->forget_parts_of(body);
+    entry.group->neighbors_->forget(body);
   }
 }
 
@@ -181,7 +182,18 @@ void BehaviorList::body_reset(Body& body) {
   for (Behavior* behavior : body.behaviors_) behavior->restart();
 }
 
+std::shared_ptr<NeighborSet> BehaviorList::neighbor_set(std::vector<Part*> parts) {
+  std::erase_if(neighbor_sets_, [](const auto& known) { return known.expired(); });
+  for (const auto& known : neighbor_sets_) {
+    if (std::shared_ptr<NeighborSet> set = known.lock(); set->holds(parts)) return set;
+  }
+  auto set = std::make_shared<NeighborSet>(world_, std::move(parts));
+  neighbor_sets_.push_back(set);
+  return set;
+}
+
 void BehaviorList::follow_bodies() {
+  if (stepping_) return;
   const std::uint64_t structure = world_.store().structure_version();
   if (std::exchange(structure_, structure) == structure) return;
   for (const Entry& entry : entries_) {
@@ -196,11 +208,15 @@ void BehaviorList::follow_bodies() {
       if (const Result<void> resolved = behavior->resolve(); !resolved) behavior->fail({resolved.error(), "", 0});
     }
   }
+  for (const Entry& entry : entries_) {
+    if (entry.group != nullptr) entry.group->laid_out_ = false;
+  }
   structure_ = world_.store().structure_version();  // newcomers are followed already
 }
 
 void BehaviorList::step(double dt) {
   follow_bodies();
+  turn_++;
   stepping_ = true;
   double before = clock_seconds();
   for (std::size_t i = 0; i < entries_.size(); i++) {

@@ -12,6 +12,7 @@
 #include "sim/behavior.h"
 #include "sim/behavior_group.h"
 #include "sim/behavior_type.h"
+#include "sim/neighbors.h"
 
 namespace limber {
 
@@ -52,6 +53,10 @@ class BehaviorList {
   void follow_bodies();
   /// Every behaviour that runs, in order.
   void step(double dt);
+  /// Counts the steps.
+  std::uint64_t turn() const { return turn_; }
+  /// The set of these parts, shared by all groups that look at the same ones.
+  std::shared_ptr<NeighborSet> neighbor_set(std::vector<Part*> parts);
 
   /// Told of each error, once.
   void on_fault(std::function<void(const Behavior&)> hook) { on_fault_ = std::move(hook); }
@@ -80,7 +85,9 @@ class BehaviorList {
   std::vector<Entry> entries_;
   std::vector<std::unique_ptr<Behavior>> graves_;  // removed while they were stepped
   std::vector<std::unique_ptr<BehaviorGroup>> group_graves_;
+  std::vector<std::weak_ptr<NeighborSet>> neighbor_sets_;
   std::uint64_t structure_ = 0;
+  std::uint64_t turn_ = 0;
   bool stepping_ = false;
   std::function<void(const Behavior&)> on_fault_;
 };

@@ -6,6 +6,7 @@
 #include <memory>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "base/result.h"
@@ -40,6 +41,17 @@ struct BehaviorType {
   /// the naming rule, none called like a common row.
   static BehaviorType of(std::string name, std::string doc, BehaviorTargets targets, bool is_group,
                          std::vector<Row> parameters, std::function<std::unique_ptr<Behavior>()> make);
+  /// The same for a class of ours.
+  template <class T>
+  static BehaviorType of(std::string name, std::string doc, BehaviorTargets targets, std::vector<Row> parameters) {
+    return of(std::move(name), std::move(doc), targets, false, std::move(parameters),
+              [] { return std::make_unique<T>(); });
+  }
+  template <class T>
+  static BehaviorType of_group(std::string name, std::string doc, std::vector<Row> parameters) {
+    return of(std::move(name), std::move(doc), BehaviorTargets::parts, true, std::move(parameters),
+              [] { return std::make_unique<T>(); });
+  }
 };
 
 /// Registers a built-in type: `const BuiltInBehavior registered([] { return BehaviorType::of(…); });` in its file.

@@ -110,11 +110,6 @@ void Body::note_moved() {
   moved_ = true;
 }
 
-void Body::note_force() {
-  keep();
-  forced_ = true;
-}
-
 Result<Part*> Body::add_part(std::string name, Shape& shape, double mass, const Pose& pose) {
   if (const Result<void> free = world_.name_is_free(part_group_, "part", name); !free) return Error{free.error()};
   if (!is_finite(pose.position) || !is_finite(pose.rotation) || glm::dot(pose.rotation, pose.rotation) < 1e-18) {
@@ -345,10 +340,8 @@ void Body::settle_joints() {
   for (const auto& joint : joints_) joint->read_anew();
 }
 
-void Body::push_forces() {
+void Body::follow_leaders() {
   for (Motor* motor : followers_) motor->follow();
-  if (!std::exchange(forced_, false)) return;
-  for (const auto& part : parts_) part->push_forces();
 }
 
 void Body::take_good_pose() {

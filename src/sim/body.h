@@ -78,10 +78,9 @@ class Body {
 
   /// A part's pose was set by hand: joints read it anew before the next step.
   void note_moved();
-  /// A force or impulse waits in a part for the next step.
-  void note_force();
 
-  void push_forces();
+  /// Before Bullet steps: followers' targets from their leaders.
+  void follow_leaders();
   void tell();
   /// The present pose is what health goes back to.
   void take_good_pose();
@@ -126,7 +125,6 @@ class Body {
   std::size_t entered_parts_ = 0;  // the first so many are in Bullet's world
   std::size_t entered_joints_ = 0;
   bool moved_ = false;
-  bool forced_ = false;
   bool fresh_ = true;  // made since the last step: where it is then is its start pose
 
   // health: the pose after the last good tick, and whether it was needed already

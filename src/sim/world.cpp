@@ -186,8 +186,9 @@ void World::step() {
   settle();
   for (const auto& body : bodies_) {
     if (std::exchange(body->fresh_, false)) body->take_start_pose();
-    if (body->in_world()) body->push_forces();
+    if (body->in_world()) body->follow_leaders();
   }
+  loads_.push();
   contacts_.begin_tick();
   const double before = clock_seconds();
   const int substeps = static_cast<int>(store_.values(id_, *world_rows().substeps)[0]);

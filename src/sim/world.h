@@ -86,6 +86,7 @@ class World {
   /// One a link, built once a model and shared by all its bodies.
   const std::vector<std::shared_ptr<const Geometry>>& geometries_of(const std::shared_ptr<const BodyModel>& model);
 
+  PartLoads& loads() { return loads_; }
   IslandWorld& bullet() { return *bullet_; }
   Contacts& contact_log() { return contacts_; }
   /// What takes a guarded call of a script back.
@@ -105,6 +106,7 @@ class World {
   Store& store_;
   NodeId id_, body_group_, shape_group_;
   std::unique_ptr<IslandWorld> bullet_;
+  PartLoads loads_;
   std::vector<std::unique_ptr<Shape>> shapes_;
   std::vector<std::unique_ptr<Body>> bodies_;
   std::unique_ptr<BehaviorList> behaviors_;

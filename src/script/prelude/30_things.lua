@@ -7,10 +7,15 @@ local V, Q, F, istype, format = P.V, P.Q, P.F, P.ffi.istype, string.format
 
 local classes, by_table, by_ctype = {}, {}, {}
 P.classes = classes
+function P.add_class(class) by_table[class.table], by_ctype[tonumber(class.ctype)] = class, class end
+-- behaviours have a table each type: their classes are made when they are met (55_behaviors.lua)
+local function class_of_table(number) return by_table[number] or P.make_class(number) end
+P.class_of_table = class_of_table
 for i, name in ipairs { "sim", "body", "part", "joint", "motor", "shape" } do
   local class = { name = name, ctype = ffi.typeof(name), getters = {}, setters = {}, methods = {}, rows = {} }
   class.table = api.class_table(ctx, i - 1)
-  classes[name], by_table[class.table], by_ctype[tonumber(class.ctype)] = class, class, class
+  classes[name] = class
+  P.add_class(class)
 end
 
 -- handles: one for each slot, so that a thing is always the same key of a table; names stay for the gone ones
@@ -21,7 +26,7 @@ P.names = names
 
 local thing
 local function intern(slot, generation)
-  local class = by_table[view.slots[slot].table]
+  local class = class_of_table(view.slots[slot].table)
   local h = class.ctype(slot, generation)
   api.name(ctx, slot, generation)
   names[h] = text()
