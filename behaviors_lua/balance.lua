@@ -10,15 +10,17 @@ return behavior {
     { "max_torque", 50, min = 0, max = 1e4, unit = "N·m", doc = "The torque never exceeds this." },
   },
   step = function(self)
-    local world_up = vec3(0, 0, 1)
+    local world_up, own_up = vec3(0, 0, 1), self.up:normalized()
+    -- upside down, every way back is as good
+    local sideways = (math.abs(own_up.x) < 0.9 and vec3(1, 0, 0) or vec3(0, 1, 0)):cross(own_up):normalized()
     for _, part in ipairs(self.parts) do
-      local up = part.rotation * self.up:normalized()
+      local up = part.rotation * own_up
       local turn = up:cross(world_up) -- its length is the sine of the angle off upright
-      local sine, angle = turn:length(), math.acos(math.clamp(up:dot(world_up), -1, 1))
-      -- upside down every way back is as good
-      local back = sine > 1e-6 and turn / sine or (angle > 1 and part.rotation * vec3(self.up.y, self.up.z, self.up.x):cross(self.up):normalized() or vec3())
+      local sine = turn:length()
+      local angle = math.atan2(sine, up:dot(world_up))
+      local about = sine > 1e-6 and turn / sine or part.rotation * sideways
       local spin = part.angular_velocity
-      local torque = back * (self.stiffness * angle) - (spin - world_up * spin.z) * self.damping
+      local torque = about * (self.stiffness * angle) - (spin - world_up * spin.z) * self.damping
       local strength = torque:length()
       if strength > self.max_torque then torque = torque * (self.max_torque / strength) end
       part:apply_torque(torque)

@@ -9,7 +9,7 @@ return behavior {
     { "lag", 0.5, min = 0, max = 6.28, unit = "rad", doc = "Delay from one motor to the next." },
     { "offset", 0, min = -6.28, max = 6.28, unit = "rad", doc = "Delay of the whole: two bodies need not breathe together." },
   },
-  start = function(self) self.state.phase = 0 end,
+  start = function(self) self.state.phase = self.state.phase or 0 end,
   step = function(self, dt)
     -- a phase that is summed up, so that a new rate does not make the motors jump
     local s = self.state

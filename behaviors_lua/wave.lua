@@ -9,13 +9,14 @@ return behavior {
     { "depth", 0.5, min = 0, max = 1.57, unit = "rad", doc = "Largest deviation." },
     { "growth", 0, min = -1, max = 1, doc = "How much more the tip swings than the root: 1: the root rests, −1: the tip." },
   },
-  start = function(self) self.state.phase = 0 end,
+  start = function(self) self.state.phase = self.state.phase or 0 end,
   step = function(self, dt)
     local s, motors = self.state, self.motors
     s.phase = s.phase + 2 * math.pi * self.rate * dt
+    local growth, last = self.growth, math.max(#motors - 1, 1)
     for i, motor in ipairs(motors) do
-      local along = #motors > 1 and (i - 1) / (#motors - 1) or 0
-      local share = self.growth >= 0 and 1 - self.growth * (1 - along) or 1 + self.growth * along
+      local along = (i - 1) / last -- 0 at the root, 1 at the tip
+      local share = growth >= 0 and 1 - growth * (1 - along) or 1 + growth * along
       motor.target = share * self.depth * math.sin(s.phase - 2 * math.pi * i / self.length)
     end
   end,

@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include "base/clock_seconds.h"
 #include "base/log.h"
 #include "base/text.h"
 
@@ -16,20 +17,16 @@ namespace {
 // while the next tick is further away than this, commands take effect without waiting for it
 constexpr auto kLongestWait = std::chrono::milliseconds(50);
 
-double seconds_now() {
-  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
-}
-
 // the time since the last lap
 class Stopwatch {
  public:
   double lap() {
-    const double now = seconds_now();
+    const double now = clock_seconds();
     return now - std::exchange(last_, now);
   }
 
  private:
-  double last_ = seconds_now();
+  double last_ = clock_seconds();
 };
 
 }  // namespace
@@ -205,6 +202,7 @@ void Engine::pass(bool may_step) {
   if (running) {
     stage.world.step();
     const TickTimes& physics = stage.world.times();
+    times_.behaviors = physics.behaviors;
     times_.effects = physics.effects;
     times_.physics = physics.physics;
     times_.readouts = physics.readouts;

@@ -35,12 +35,13 @@ struct EngineOptions {
 struct PhaseTimes {
   double commands = 0;
   double scripts = 0;
+  double behaviors = 0;
   double effects = 0;
   double physics = 0;
   double readouts = 0;
   double snapshot = 0;
   double collector = 0;
-  double total() const { return commands + scripts + effects + physics + readouts + snapshot; }
+  double total() const { return commands + scripts + behaviors + effects + physics + readouts + snapshot; }
 };
 
 class Engine : private ScriptHost {

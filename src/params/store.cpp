@@ -124,6 +124,67 @@ const Store::Node& Store::nobody() {
   return none;
 }
 
+NodeId Store::retable(NodeId id, const Table& table, void* thing) {
+  if (!alive(id)) return {};
+  Node& node = nodes_[id.slot];
+  LIMBER_CHECK(node.children.empty());
+  node.thing = thing;
+  if (node.table == &table) return id;
+  // what both tables have is carried over
+  std::vector<double> carried;
+  const Table& before = *node.table;
+  for (const Row& row : table.rows()) {
+    const std::size_t at = carried.size();
+    carried.insert(carried.end(), row.initial.begin(), row.initial.begin() + row.width);
+    const Row* const old = before.find(row.name);
+    if (!row.stored() || old == nullptr || !old->stored() || old->type != row.type) continue;
+    const double* const values = slot_values(id, *old);
+    for (std::uint32_t i = 0; i < row.width; i++) carried[at + i] = std::clamp(values[i], row.low(i), row.high(i));
+    if (row.type != RowType::choice) continue;
+    // a choice is its label, wherever that now stands
+    const auto label =
+        std::find(row.choices.begin(), row.choices.end(), old->choices[static_cast<std::size_t>(values[0])]);
+    carried[at] = label == row.choices.end() ? row.initial[0] : static_cast<double>(label - row.choices.begin());
+  }
+  give_back_blocks(id.slot);
+  NodeSlot& slot = slots_[id.slot];
+  slot.generation += 2;
+  slot.table = table_number(table);
+  slot.kept = take_block(kept_, spare_kept_, table.kept_width());
+  slot.live = take_block(live_, spare_live_, table.live_width());
+  node.table = &table;
+  node.marks = 0;
+  const NodeId renewed{id.slot, slot.generation};
+  std::vector<NodeId>& siblings = nodes_[node.parent.slot].children;
+  std::replace(siblings.begin(), siblings.end(), id, renewed);
+  std::size_t at = 0;
+  for (const Row& row : table.rows()) {
+    if (row.stored()) std::copy_n(carried.data() + at, row.width, slot_values(renewed, row));
+    at += row.width;
+  }
+  mark_all(renewed);
+  kept_version_++;
+  structure_version_++;
+  refresh_view();
+  return renewed;
+}
+
+// the numbers of a node, whose room is used again
+void Store::give_back_blocks(std::uint32_t at) {
+  const NodeSlot& slot = slots_[at];
+  const Table& table = *nodes_[at].table;
+  const auto spare = [](std::vector<std::vector<std::uint32_t>>& list, std::uint32_t base, std::uint32_t width) {
+    if (width == 0) return;
+    if (list.size() <= width) list.resize(width + 1);
+    list[width].push_back(base);
+  };
+  // a freed block is zero, so that snapshots and hashes do not tell of the dead
+  std::fill_n(kept_.begin() + slot.kept, table.kept_width(), 0.0);
+  std::fill_n(live_.begin() + slot.live, table.live_width(), 0.0);
+  spare(spare_kept_, slot.kept, table.kept_width());
+  spare(spare_live_, slot.live, table.live_width());
+}
+
 void Store::release(NodeId id) {
   for (const NodeId child : nodes_[id.slot].children) release(child);
   child_of_.erase(child_of_.find(id.slot));
@@ -133,20 +194,9 @@ void Store::release(NodeId id) {
 
 // what a slot holds, of a node that is gone
 void Store::give_back(std::uint32_t at) {
-  Node& node = nodes_[at];
-  NodeSlot& slot = slots_[at];
-  const auto spare = [](std::vector<std::vector<std::uint32_t>>& list, std::uint32_t base, std::uint32_t width) {
-    if (width == 0) return;
-    if (list.size() <= width) list.resize(width + 1);
-    list[width].push_back(base);
-  };
-  // a freed block is zero, so that snapshots and hashes do not tell of the dead
-  std::fill_n(kept_.begin() + slot.kept, node.table->kept_width(), 0.0);
-  std::fill_n(live_.begin() + slot.live, node.table->live_width(), 0.0);
-  spare(spare_kept_, slot.kept, node.table->kept_width());
-  spare(spare_live_, slot.live, node.table->live_width());
+  give_back_blocks(at);
   free_slots_.push_back(at);
-  node = {};
+  nodes_[at] = {};
 }
 
 void Store::remove(NodeId id) {
@@ -224,6 +274,7 @@ Result<SetOutcome> Store::set(NodeId id, const Row& row, std::span<const double>
   std::copy_n(taken.data(), row.width, slot_values(id, row));
   if (!row.live) kept_version_++;
   mark(id, row);
+  if (row.written != nullptr) row.written(the_thing, row);
   return outcome;
 }
 

@@ -51,6 +51,10 @@ class Store {
   NodeId add(const Table& table, NodeId parent, std::string name, void* thing);
   /// A node without rows, such as /physics/body.
   NodeId add_group(NodeId parent, std::string name);
+  /// Gives a node without children another table and thing, in its place and under its name. Rows of the same name and
+  /// type keep their values, brought into their ranges; the others have their defaults. The id stays when the table
+  /// does; else the old one is stale.
+  NodeId retable(NodeId id, const Table& table, void* thing);
   /// Removes the node and all below it.
   void remove(NodeId id);
 
@@ -204,6 +208,7 @@ class Store {
   std::uint32_t take_block(std::vector<double>& block, std::vector<std::vector<std::uint32_t>>& spare,
                            std::uint32_t width);
   void release(NodeId id);
+  void give_back_blocks(std::uint32_t slot);
   void give_back(std::uint32_t slot);
   void keep_value(NodeId id, const Row& row);
   void turn_hidden(NodeId id, bool hide);

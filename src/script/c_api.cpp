@@ -5,6 +5,7 @@
 
 #include "params/store.h"
 #include "script/match.h"
+#include "sim/neighbors.h"
 
 namespace limber {
 
@@ -22,6 +23,11 @@ static_assert(offsetof(LimberView, slots) == offsetof(StoreView, slots));
 static_assert(offsetof(LimberView, kept) == offsetof(StoreView, kept));
 static_assert(offsetof(LimberView, live) == offsetof(StoreView, live));
 static_assert(offsetof(LimberView, slot_count) == offsetof(StoreView, slot_count));
+
+static_assert(sizeof(LimberNeighbor) == sizeof(Neighbor));
+static_assert(offsetof(LimberNeighbor, index) == offsetof(Neighbor, index));
+static_assert(offsetof(LimberNeighbor, x) == offsetof(Neighbor, offset));
+static_assert(offsetof(LimberNeighbor, distance) == offsetof(Neighbor, distance));
 
 const LimberApi& limber_api() {
   static const LimberApi api = {

@@ -7,11 +7,23 @@
 #include "base/log.h"
 #include "base/text.h"
 #include "params/units.h"
+#include "script/behavior_scripts.h"
 #include "script/context.h"
 #include "script/guard.h"
 #include "script/noise.h"
 
 namespace limber::calls {
+
+namespace {
+
+Random& generator_of(ScriptContext& c, std::int32_t slot, std::int32_t generation) {
+  if (slot < -1) return c.behaviors->generator(-2 - slot);
+  const NodeId id = id_of(slot, generation);
+  // one that outlives its behaviour draws from the scene's
+  return slot >= 0 && c.alive(id) ? static_cast<Behavior*>(c.world->store().thing(id))->random() : c.generator();
+}
+
+}  // namespace
 
 std::int32_t hint(void* c, const char* written, std::int32_t length, const char* names, std::int32_t names_length) {
   std::vector<std::string_view> list;
@@ -83,9 +95,12 @@ std::int32_t stop_text(void* c) {
   return context.say(context.guard->stop_text());
 }
 
-std::int32_t read_lib(void* c, const char* name, std::int32_t length) {
+std::int32_t read_lib(void* c, std::int32_t of, const char* name, std::int32_t length) {
   ScriptContext& context = context_of(c);
-  const Result<std::string> file = context.sources->find_lib(context.files, text_of(name, length));
+  BehaviorFile* const behavior = of < 0 ? nullptr : &context.behaviors->file(of);
+  const Result<std::string> file =
+      behavior == nullptr ? context.sources->find_lib(context.files, text_of(name, length))
+                          : context.sources->find_behavior_lib(context.files, text_of(name, length), behavior->path);
   if (!file) return context.refuse(file.error());
   Result<std::string> text = context.sources->text(*file);
   if (!text) return context.refuse(text.error());
@@ -93,13 +108,17 @@ std::int32_t read_lib(void* c, const char* name, std::int32_t length) {
   return context.say(context.files.shown(*file) + "\n" + *text);
 }
 
-double random_uniform(void* c) { return context_of(c).generator().uniform(); }
+double random_uniform(void* c, std::int32_t slot, std::int32_t generation) {
+  return generator_of(context_of(c), slot, generation).uniform();
+}
 
-double random_normal(void* c) { return context_of(c).generator().normal(); }
+double random_normal(void* c, std::int32_t slot, std::int32_t generation) {
+  return generator_of(context_of(c), slot, generation).normal();
+}
 
-std::int32_t random_direction(void* c) {
+std::int32_t random_direction(void* c, std::int32_t slot, std::int32_t generation) {
   ScriptContext& context = context_of(c);
-  const Vec3 v = context.generator().direction();
+  const Vec3 v = generator_of(context, slot, generation).direction();
   for (int i = 0; i < 3; i++) context.answer.number[i] = v[i];
   return kOk;
 }
@@ -124,11 +143,13 @@ std::int32_t contact(void* c, std::int32_t index) {
 
 void ask_reset(void* c) { context_of(c).reset_wanted = true; }
 
+void param_begin(void* c) { context_of(c).param_rows.clear(); }
+
 std::int32_t param_row(void* c, const char* name, std::int32_t length, std::int32_t type, const double* initial,
                        const double* low, const double* high) {
   ScriptContext& context = context_of(c);
   const std::string_view wanted = text_of(name, length);
-  if (context.param_rows.size() >= 64) return context.refuse("params: a scene may have 64 parameters");
+  if (context.param_rows.size() >= 64) return context.refuse("params: more than 64 parameters");
   for (const Row& other : context.param_rows) {
     if (same_name(other.name, wanted)) {
       return context.refuse(fmt::format("params: '{}' and '{}' are the same name (case and underscores don't count)",

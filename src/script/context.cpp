@@ -3,16 +3,22 @@
 
 #include <fmt/format.h>
 
+#include "script/behavior_scripts.h"
 #include "script/guard.h"
 
 namespace limber {
 
 ScriptContext::ScriptContext(World& w, ScriptHost& h, SceneOptions o)
-    : world(&w), host(h), options(std::move(o)), search([this] { return guard->stop_asked(); }) {
+    : world(&w),
+      host(h),
+      options(std::move(o)),
+      search([this] { return guard->stop_asked(); }),
+      behaviors(std::make_shared<BehaviorScripts>(*this)) {
   world->store().show_view(view);
 }
 
 ScriptContext::~ScriptContext() {
+  behaviors->close();
   if (world != nullptr) world->store().hide_view(view);
 }
 
@@ -42,7 +48,7 @@ Random& ScriptContext::generator() {
 
 std::uint64_t ScriptContext::hash(std::uint64_t start) {
   const auto& words = generator().state();
-  start = hash_bytes({reinterpret_cast<const char*>(words.data()), sizeof words}, start);
+  start = behaviors->hash(hash_bytes({reinterpret_cast<const char*>(words.data()), sizeof words}, start));
   if (params == nullptr) return start;
   const double* kept = std::as_const(world->store()).kept_block(params->id());
   return hash_bytes({reinterpret_cast<const char*>(kept), params->table().kept_width() * sizeof(double)}, start);
@@ -59,6 +65,7 @@ void ScriptContext::begin_call() {
 void ScriptContext::end_call(bool good) {
   if (good) {
     world->undo().end();
+    forces.apply(world->loads());
     for (Held& h : held) {
       if (h.way == Way::all) {
         host.send(std::move(h.message));
@@ -70,11 +77,25 @@ void ScriptContext::end_call(bool good) {
     }
     if (reset_wanted) host.ask_reset();
   } else {
+    forces.clear();
     world->undo().take_back();
     random = random_before_;
     seeded_with = seeded_before_;
   }
   held.clear();
+}
+
+Behavior* behavior_of(const ScriptContext& c, NodeId id) {
+  const Store& store = c.world->store();
+  if (!c.alive(id) || store.table(id).name() != "behavior") return nullptr;
+  return static_cast<Behavior*>(store.thing(id));
+}
+
+BehaviorGroup* group_of(const ScriptContext& c, NodeId id) {
+  const Store& store = c.world->store();
+  // Store's own nodes without rows are called groups too
+  if (!c.alive(id) || store.is_group(id) || store.table(id).name() != "group") return nullptr;
+  return static_cast<BehaviorGroup*>(store.thing(id));
 }
 
 std::string label_of(const ScriptContext& c, NodeId id) {
@@ -84,7 +105,9 @@ std::string label_of(const ScriptContext& c, NodeId id) {
   if (table == &World::table()) return "sim";
   const std::string& name = store.name(id);
   if (table == &Body::table() || table == &Shape::table()) return fmt::format("{} '{}'", table->name(), name);
-  if (table == &Part::table() || table == &Joint::table() || table == &Motor::table()) {
+  if (group_of(c, id) != nullptr) return fmt::format("group '{}'", name);
+  if (table == &Part::table() || table == &Joint::table() || table == &Motor::table() ||
+      behavior_of(c, id) != nullptr) {
     return fmt::format("{} '{}/{}'", table->name(), store.name(store.parent(store.parent(id))), name);
   }
   return "params";

@@ -43,6 +43,23 @@ Result<std::string> Sources::find_lib(const ScriptFiles& files, std::string_view
   return path;
 }
 
+Result<std::string> Sources::find_behavior_lib(const ScriptFiles& files, std::string_view name,
+                                               const std::string& behavior) {
+  const std::string key = fmt::format("module {} of {}", name, behavior);
+  if (const std::string* before = known(&Sources::found_, key)) return found_[key] = *before;
+  Result<std::string> path = files.find_behavior_lib(name, behavior, &passed_);
+  if (path) found_[key] = *path;
+  return path;
+}
+
+std::string Sources::find_behavior(const ScriptFiles& files, std::string_view type) {
+  const std::string key = fmt::format("behavior {}", type);
+  if (const std::string* before = known(&Sources::found_, key)) return found_[key] = *before;
+  std::string path = files.find_behavior(type, &passed_);
+  if (!path.empty()) found_[key] = path;
+  return path;
+}
+
 Result<std::string> Sources::text(const std::string& path) {
   if (const std::string* before = known(&Sources::texts_, path)) return texts_[path] = *before;
   Result<std::string> text = read_script(path);

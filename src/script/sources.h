@@ -29,6 +29,9 @@ class Sources {
   /// As ScriptFiles finds them.
   Result<std::string> find(const ScriptFiles& files, std::string_view name);
   Result<std::string> find_lib(const ScriptFiles& files, std::string_view name);
+  Result<std::string> find_behavior_lib(const ScriptFiles& files, std::string_view name, const std::string& behavior);
+  /// Empty: there is none.
+  std::string find_behavior(const ScriptFiles& files, std::string_view type);
   /// A script's text.
   Result<std::string> text(const std::string& path);
   Result<std::shared_ptr<const BodyModel>> model(const std::string& path, const ImportOptions& options);

@@ -9,6 +9,7 @@
 #include "base/check.h"
 #include "base/log.h"
 #include "base/text.h"
+#include "script/behavior_scripts.h"
 #include "script/context.h"
 #include "script/prelude.h"
 #include "script/scene.h"
@@ -90,6 +91,7 @@ Vm::Vm(ScriptContext& context, VmMode wanted)
   context.guard = &guard_;
   load_prelude(context);
   keep_entries();
+  context.behaviors->open(*this);
   if (wanted == VmMode::live) guard_.arm();
   collector_.emplace(state_.get(), guard_.memory());
 }
@@ -151,6 +153,15 @@ void Vm::keep_entries() {
     guard_.use(handler, stopped_fault, keep("failed"));
     lua_pushvalue(L, -1);
     entries_ = luaL_ref(L, LUA_REGISTRYINDEX);
+    make_behavior_ = keep("make_behavior");
+    renew_behavior_ = keep("renew_behavior");
+    restore_behavior_ = keep("restore_behavior");
+    behavior_state_ = keep("behavior_state");
+    drop_behavior_ = keep("drop_behavior");
+    behavior_self_ = keep("behavior_self");
+    behavior_start_ = keep("behavior_start");
+    behavior_step_ = keep("behavior_step");
+    behavior_migrate_ = keep("behavior_migrate");
   }
   lua_settop(L, 0);
 }

@@ -1,16 +1,19 @@
 // Vm: the one LuaJIT state of a scene, with the trusted prelude inside. Everything runs on the simulation thread.
 #pragma once
 
+#include <cstdint>
 #include <memory>
 #include <optional>
 #include <string>
 #include <string_view>
 
 #include "base/evaluation.h"
+#include "base/id.h"
 #include "base/message.h"
 #include "base/result.h"
 #include "script/collector.h"
 #include "script/guard.h"
+#include "sim/behavior.h"
 
 struct lua_State;
 
@@ -39,6 +42,14 @@ class Vm {
   bool message(const Message& message, const Origin& origin);
   /// Asks an entry of the prelude's 95_console.lua, "evaluate" or "complete", about a text. [sim]
   Evaluation ask(const char* entry, std::string_view text);
+  // Behaviours of behaviors_lua/ (behavior_scripts.h); a fault without text: it went well.
+  /// Makes the `self` of an instance: its number, from 1. [sim]
+  std::int32_t make_behavior(std::int32_t file, NodeId id);
+  BehaviorFault start_behavior(std::int32_t number);
+  BehaviorFault step_behavior(std::int32_t number, double dt);
+  BehaviorFault restore_behavior(std::int32_t number, std::string_view state, bool migrate);
+  Result<std::string> behavior_state(std::int32_t number);
+  void drop_behavior(std::int32_t number);
   /// Every name that a scene sees, one a line: globals, library.member, thing.member, thing:method. [sim]
   std::string names();
   /// Calls of scripts' code, from C++ too: the state's main thread is `state()`. [sim]
@@ -68,6 +79,8 @@ class Vm {
   void keep_entries();
   bool call(int arguments, int results);
   void push_entry(const char* name);
+  bool push_behavior(int functions, std::int32_t number);
+  BehaviorFault guarded_behavior(int arguments, int results);
 
   struct Close {
     void operator()(lua_State* state) const;
@@ -81,6 +94,15 @@ class Vm {
   int tick_ = -1;
   int message_ = -1;
   int names_ = -1;
+  int make_behavior_ = -1;
+  int renew_behavior_ = -1;
+  int restore_behavior_ = -1;
+  int behavior_state_ = -1;
+  int drop_behavior_ = -1;
+  int behavior_self_ = -1;  // tables by the number of the instance
+  int behavior_start_ = -1;
+  int behavior_step_ = -1;
+  int behavior_migrate_ = -1;
 };
 
 }  // namespace limber

@@ -8,6 +8,7 @@
 
 #include "base/random.h"
 #include "base/text.h"
+#include "sim/behavior_list.h"
 #include "sim/world.h"
 
 namespace limber {
@@ -63,9 +64,11 @@ Body::Body(World& world, NodeId group, std::string name)
   part_group_ = store().add_group(id_, "part");
   joint_group_ = store().add_group(id_, "joint");
   motor_group_ = store().add_group(id_, "motor");
+  behavior_group_ = store().add_group(id_, "behavior");
 }
 
 Body::~Body() {
+  world_.behaviors().body_gone(*this);
   // joints let go of parts before those go
   motors_.clear();
   joints_.clear();
@@ -79,6 +82,10 @@ Store& Body::store() const { return world_.store(); }
 Part* Body::find_part(std::string_view name) const { return find_by_name<Part>(store(), part_group_, name); }
 Joint* Body::find_joint(std::string_view name) const { return find_by_name<Joint>(store(), joint_group_, name); }
 Motor* Body::find_motor(std::string_view name) const { return find_by_name<Motor>(store(), motor_group_, name); }
+
+Behavior* Body::find_behavior(std::string_view name) const {
+  return find_by_name<Behavior>(store(), behavior_group_, name);
+}
 
 Result<Pose> Body::link_pose(std::string_view name) const {
   if (const Part* part = find_part(name)) return part->pose();
@@ -101,11 +108,6 @@ void Body::keep() {
 void Body::note_moved() {
   keep();
   moved_ = true;
-}
-
-void Body::note_force() {
-  keep();
-  forced_ = true;
 }
 
 Result<Part*> Body::add_part(std::string name, Shape& shape, double mass, const Pose& pose) {
@@ -135,6 +137,7 @@ Result<Part*> Body::add_part(std::string name, Shape& shape, double mass, const 
     store().tell(part->id(), Part::table().at("restitution"))[0] = 1;
   }
   parts_.push_back(std::move(part));
+  structure_++;
   world_.undo().made_part(*this);
   return parts_.back().get();
 }
@@ -166,6 +169,7 @@ Result<Joint*> Body::add_joint(std::string name, Part& parent, Part& child, Join
   joints_.push_back(std::make_unique<Joint>(*this, joint_group_, std::move(name), parent, child, spec));
   world_.undo().made_joint(*this);
   joints_.back()->read_anew();
+  structure_++;
   return joints_.back().get();
 }
 
@@ -178,6 +182,7 @@ Result<Motor*> Body::add_motor(Joint& joint) {
   if (joint.type() == JointType::fixed) return fault("is fixed and takes no motor");
   motors_.push_back(std::make_unique<Motor>(joint, motor_group_));
   if (joint.spec().mimic) followers_.push_back(motors_.back().get());
+  structure_++;
   world_.undo().made_motor(*this);
   return motors_.back().get();
 }
@@ -260,6 +265,7 @@ void Body::build_copy(const Body& source) {
     if (joint.spec().mimic) followers_.push_back(motors_.back().get());
     copy_values(from->motor()->id(), motors_.back()->id(), Motor::table());
   }
+  world_.behaviors().copy(source, *this);
 }
 
 Pose Body::pose() const { return parts_.empty() ? planned_ : root()->pose(); }
@@ -274,7 +280,10 @@ void Body::set_pose(const Pose& pose) {
   for (const auto& part : parts_) part->set_pose(part.get() == root() ? pose : moved * part->pose());
 }
 
-bool Body::enabled() const { return store().values(id_, table().at("enabled"))[0] != 0; }
+bool Body::enabled() const {
+  static const Row& row = table().at("enabled");
+  return store().values(id_, row)[0] != 0;
+}
 
 void Body::set_enabled(bool on) {
   const double value = on ? 1 : 0;
@@ -317,6 +326,7 @@ void Body::reset() {
     part->clear_forces();
   }
   for (const auto& joint : joints_) joint->go_to_start();
+  world_.behaviors().body_reset(*this);
   restored_once_ = false;
   good_poses_ = 0;
   set_enabled(true);
@@ -332,10 +342,8 @@ void Body::settle_joints() {
   for (const auto& joint : joints_) joint->read_anew();
 }
 
-void Body::push_forces() {
+void Body::follow_leaders() {
   for (Motor* motor : followers_) motor->follow();
-  if (!std::exchange(forced_, false)) return;
-  for (const auto& part : parts_) part->push_forces();
 }
 
 void Body::take_good_pose() {
@@ -378,6 +386,7 @@ std::uint64_t Body::state_hash(std::uint64_t hash) const {
     mix_kept(joint->id(), Joint::table());
   }
   for (const auto& motor : motors_) mix_kept(motor->id(), Motor::table());
+  for (const Behavior* behavior : behaviors_) hash = behavior->state_hash(hash);
   return hash;
 }
 

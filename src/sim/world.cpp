@@ -2,10 +2,10 @@
 #include "sim/world.h"
 
 #include <algorithm>
-#include <chrono>
 
 #include <fmt/format.h>
 
+#include "base/clock_seconds.h"
 #include "base/log.h"
 #include "base/random.h"
 #include "base/text.h"
@@ -20,10 +20,6 @@ using namespace rows;
 constexpr double kMaxSpeed = 500;
 constexpr double kMaxSpin = 1000;
 constexpr double kMaxDistance = 1e4;
-
-double seconds_now() {
-  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
-}
 
 struct WorldRows {
   const Row *gravity, *timestep, *substeps, *iterations, *seed, *time, *tick;
@@ -64,6 +60,7 @@ World::World(Store& store, const WorldSetup& setup) : store_(store), bullet_(std
   const NodeId physics = store_.add_group(store_.root(), "physics");
   id_ = store_.add(table(), physics, "sim", this);
   body_group_ = store_.add_group(physics, "body");
+  behaviors_ = std::make_unique<BehaviorList>(*this, physics);
   const NodeId visuals = store_.add_group(store_.root(), "visuals");
   shape_group_ = store_.add_group(visuals, "shape");
   bullet_->setInternalTickCallback(&World::after_internal_step, this, false);
@@ -72,6 +69,7 @@ World::World(Store& store, const WorldSetup& setup) : store_(store), bullet_(std
 World::~World() { clear(); }
 
 void World::clear() {
+  behaviors_->clear();
   bodies_.clear();
   shapes_.clear();
   geometries_.clear();
@@ -182,17 +180,20 @@ void World::settle() {
 }
 
 void World::step() {
-  const double start = seconds_now();
+  const double begin = clock_seconds();
+  behaviors_->step(timestep());
+  const double start = clock_seconds();
   settle();
   for (const auto& body : bodies_) {
     if (std::exchange(body->fresh_, false)) body->take_start_pose();
-    if (body->in_world()) body->push_forces();
+    if (body->in_world()) body->follow_leaders();
   }
+  loads_.push();
   contacts_.begin_tick();
-  const double before = seconds_now();
+  const double before = clock_seconds();
   const int substeps = static_cast<int>(store_.values(id_, *world_rows().substeps)[0]);
   bullet_->step(timestep() / substeps, substeps);
-  const double after = seconds_now();
+  const double after = clock_seconds();
   contacts_.end_tick();
   tick_++;
   store_.tell(id_, *world_rows().time)[0] += timestep();
@@ -203,7 +204,7 @@ void World::step() {
     if (!body->broken_) body->take_good_pose();
   }
   if (std::exchange(healed_, false)) settle_healed();
-  times_ = {before - start, after - before, seconds_now() - after};
+  times_ = {start - begin, before - start, after - before, clock_seconds() - after};
 }
 
 void World::after_internal_step(btDynamicsWorld* bullet, btScalar) {
@@ -277,7 +278,7 @@ std::uint64_t World::state_hash() const {
   const double moment[] = {time(), static_cast<double>(tick_), static_cast<double>(seed())};
   hash = hash_bytes({reinterpret_cast<const char*>(moment), sizeof moment}, hash);
   for (const auto& body : bodies_) hash = body->state_hash(hash);
-  return hash;
+  return behaviors_->state_hash(hash);
 }
 
 }  // namespace limber

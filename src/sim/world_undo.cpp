@@ -10,14 +10,15 @@ namespace limber {
 
 struct WorldUndo::Forces {
   Part* part;
-  Vec3 force, torque, impulse, angular_impulse;
+  PartLoads::Load load;
+  PartLoads::Kick kick;
 };
 
 struct WorldUndo::BodyState {
   Body* body;
   Pose planned;
   std::size_t good_poses;
-  bool moved, forced, restored_once;
+  bool moved, restored_once;
 };
 
 struct WorldUndo::Motion {
@@ -75,28 +76,26 @@ bool WorldUndo::first_time(std::uint64_t& kept_in) const { return std::exchange(
 
 void WorldUndo::keep(Part& part) {
   if (!first_time(part.kept_in_)) return;
-  forces_.push_back({&part, part.force_, part.torque_, part.impulse_, part.angular_impulse_});
+  forces_.push_back({&part, world_.loads().load(part.load_), world_.loads().kick(part.load_)});
   note(
       [](void* undo, std::size_t at) {
-        const Forces& kept = static_cast<WorldUndo*>(undo)->forces_[at];
-        kept.part->force_ = kept.force;
-        kept.part->torque_ = kept.torque;
-        kept.part->impulse_ = kept.impulse;
-        kept.part->angular_impulse_ = kept.angular_impulse;
+        auto& self = *static_cast<WorldUndo*>(undo);
+        const Forces& kept = self.forces_[at];
+        self.world_.loads().load(kept.part->load_) = kept.load;
+        self.world_.loads().kick(kept.part->load_) = kept.kick;
       },
       this, forces_.size() - 1);
 }
 
 void WorldUndo::keep(Body& body) {
   if (!first_time(body.kept_in_)) return;
-  bodies_.push_back({&body, body.planned_, body.good_poses_, body.moved_, body.forced_, body.restored_once_});
+  bodies_.push_back({&body, body.planned_, body.good_poses_, body.moved_, body.restored_once_});
   note(
       [](void* undo, std::size_t at) {
         const BodyState& kept = static_cast<WorldUndo*>(undo)->bodies_[at];
         kept.body->planned_ = kept.planned;
         kept.body->good_poses_ = kept.good_poses;
         kept.body->moved_ = kept.moved;
-        kept.body->forced_ = kept.forced;
         kept.body->restored_once_ = kept.restored_once;
       },
       this, bodies_.size() - 1);
@@ -133,11 +132,23 @@ void WorldUndo::made_shape() {
 }
 
 void WorldUndo::made_part(Body& body) {
-  note([](void* owner, std::size_t) { static_cast<Body*>(owner)->parts_.pop_back(); }, &body);
+  note(
+      [](void* owner, std::size_t) {
+        auto& body = *static_cast<Body*>(owner);
+        body.parts_.pop_back();
+        body.structure_++;
+      },
+      &body);
 }
 
 void WorldUndo::made_joint(Body& body) {
-  note([](void* owner, std::size_t) { static_cast<Body*>(owner)->joints_.pop_back(); }, &body);
+  note(
+      [](void* owner, std::size_t) {
+        auto& body = *static_cast<Body*>(owner);
+        body.joints_.pop_back();
+        body.structure_++;
+      },
+      &body);
 }
 
 void WorldUndo::made_motor(Body& body) {
@@ -146,6 +157,7 @@ void WorldUndo::made_motor(Body& body) {
         auto& body = *static_cast<Body*>(owner);
         std::erase(body.followers_, body.motors_.back().get());
         body.motors_.pop_back();
+        body.structure_++;
       },
       &body);
 }

@@ -38,7 +38,7 @@ end
 
 local osc = {}
 local members = { "address", "sender", "on", "send", "reply", "listen", "stream_to", "to" }
-P.osc_members = members
+P.osc_members, P.osc_functions = members, osc
 local function check(self, what)
   if self ~= P.osc then fail("%s is a method of osc: write osc:%s(…), with a colon", what, what) end
 end

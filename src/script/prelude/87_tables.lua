@@ -163,7 +163,7 @@ local function next_pair(walk)
   return key, rawget(t, key)
 end
 function P.pairs(t)
-  if istype(P.L, t) or istype(P.F, t) then return P.ipairs(t) end
+  if istype(P.L, t) or istype(P.S, t) or istype(P.F, t) then return P.ipairs(t) end
   if type(t) ~= "table" then fail("pairs takes a table, not %s", describe(t)) end
   return next_pair, { t = t, keys = gather_keys(t), i = 0 }
 end

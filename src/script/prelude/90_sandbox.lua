@@ -20,10 +20,11 @@ local kMath = "abs acos asin atan atan2 ceil cos cosh deg exp floor fmod frexp h
   "pi pow rad sin sinh sqrt tan tanh"
 local kBit = "arshift band bnot bor bswap bxor lshift rol ror rshift tobit tohex"
 
-local function add_libraries(env)
+local function add_libraries(env, file)
   env.string, env.table, env.coroutine = P.make_string(), P.make_table(), P.make_coroutine()
   env.math = copy(math, kMath)
   for name, f in pairs(P.math_extra) do env.math[name] = f end
+  env.math.random = P.make_random(-2 - file)
   env.bit = copy(bit, kBit)
 end
 
@@ -71,10 +72,10 @@ local function add_functions(env)
   end
 end
 
--- modules of scripts/lib run in the environment of the script that requires them, once
+-- modules of a lib folder run in the environment of the script that requires them, once
 local loading = {}
 P.on_failure[#P.on_failure + 1] = function() loading = {} end
-local function make_require(env)
+local function make_require(env, file)
   local loaded = {}
   return function(name)
     if type(name) ~= "string" or not ("." .. name):gsub("%.[%w_]+", ""):find("^$") then
@@ -84,10 +85,10 @@ local function make_require(env)
     for _, other in ipairs(loading) do
       if other == name then fail("require goes in a circle: %s -> %s", table.concat(loading, " -> "), name) end
     end
-    if api.read_lib(ctx, name, #name) ~= 0 then fail("%s", P.text()) end
-    local file, text = P.text():match("^(.-)\n(.*)$")
-    P.sources[file] = text
-    local chunk, fault = P.load(text, "@" .. file, env)
+    if api.read_lib(ctx, file, name, #name) ~= 0 then fail("%s", P.text()) end
+    local shown, text = P.text():match("^(.-)\n(.*)$")
+    P.sources[shown] = text
+    local chunk, fault = P.load(text, "@" .. shown, env)
     if not chunk then error(fault, 0) end
     loading[#loading + 1] = name
     local ok, result = native.pcall(chunk, name)
@@ -98,24 +99,33 @@ local function make_require(env)
   end
 end
 
-function P.make_env()
-  local env = {}
-  add_libraries(env)
+-- names that one kind of script has and the other has not
+local elsewhere = {
+  scene = { behavior = "; a behavior is a file of its own in behaviors_lua/" },
+  behavior = { state = "; a behavior keeps what it remembers in self.state" },
+}
+
+-- of the scene (file -1), or of a behaviour's file, by its number
+function P.make_env(file)
+  local env, kind = {}, file < 0 and "scene" or "behavior"
+  add_libraries(env, file)
   add_functions(env)
-  env.require = make_require(env)
-  env.vec3, env.quat, env.rgb, env.rng = P.vec3, P.make_quat(), P.rgb, P.rng
-  env.sim, env.osc, env.params, env.state = P.sim, P.osc, P.params, P.first_state()
+  env.require = make_require(env, file)
+  env.vec3, env.quat, env.rgb, env.rng = P.vec3, P.make_quat(), P.rgb, P.R(-2 - file, 0)
+  env.sim, env.osc, env.params = P.sim, P.osc, P.params
+  if kind == "scene" then env.state = P.first_state() end
   return setmetatable(env, {
     __index = function(_, key)
-      local hint = P.hint(key, P.sorted_keys(env))
-      fail("there is no global '%s'%s", tostring(key), hint:find("did you mean", 1, true) and hint or "")
+      local hint = elsewhere[kind][key] or P.hint(key, P.sorted_keys(env))
+      local helps = elsewhere[kind][key] or hint:find("did you mean", 1, true)
+      fail("there is no global '%s'%s", tostring(key), helps and hint or "")
     end,
     __metatable = "environment",
   })
 end
 
 local function compile_and_run(text, name)
-  P.env = P.make_env()
+  P.env = P.make_env(-1)
   local chunk, message = P.load(text, "@" .. name, P.env)
   if not chunk then error(message, 0) end
   chunk()
@@ -130,7 +140,7 @@ end
 -- every name that a scene sees, one a line: globals, members of libraries, then members and methods of things
 function P.entry.names()
   local lines = {}
-  local env = P.make_env()
+  local env = P.make_env(-1)
   for _, name in ipairs(P.sorted_keys(env)) do
     local value = rawget(env, name)
     lines[#lines + 1] = name
