@@ -15,13 +15,16 @@ bool Engine::between_ticks(const std::function<void()>& work) {
 }
 
 void Engine::reload(bool again) {
-  Reload::End end = Reload::End::outdated;
-  while (end == Reload::End::outdated) {
+  constexpr int kTries = 3;
+  for (int i = 0; i < kTries; i++) {
     DraftOrder order;
     if (!between_ticks([&] { order = reload_.order(*stage_, again); })) return;
     Draft draft(std::move(order), *this);
-    if (!between_ticks([&] { end = take(draft); })) return;
+    Reload::End end = Reload::End::outdated;
+    if (!between_ticks([&] { end = take(draft); }) || end != Reload::End::outdated) return;
   }
+  // resets come so fast that each draft is late: this one stretches a tick
+  between_ticks([&] { reload_now(again); });
 }
 
 Reload::End Engine::reload_now(bool again) {

@@ -21,6 +21,7 @@ void Reload::begin(const Stage& stage, const SceneOptions& options) {
   ran_with_.clear();
   if (stage.scene != nullptr) stage.scene->rerun_values(ran_with_);
   keep_files({});
+  if (stage.scene != nullptr) say_mended();
 }
 
 DraftOrder Reload::order(const Stage& stage, bool again) {
@@ -55,9 +56,9 @@ Reload::End Reload::take(Draft& draft, Stage& stage) {
   const auto live_id = [&](NodeId id) { return draft.live_id(id, stage.world, things_.shapes, things_.bodies); };
   std::unique_ptr<Scene>& scene = draft.scene();
   scene->rerun_values(ran_with_);
-  std::uint64_t others = scene->become_live(stage.world, live_id, stage.scene.get());
-  for (const NodeId params = scene->params(); others != 0; others &= others - 1)
-    set_by_scene(params, store.table(params).row(static_cast<std::uint32_t>(std::countr_zero(others))));
+  std::uint64_t defaults = scene->become_live(stage.world, live_id, stage.scene.get());
+  for (const NodeId params = scene->params(); defaults != 0; defaults &= defaults - 1)
+    set_by_scene(params, store.table(params).row(static_cast<std::uint32_t>(std::countr_zero(defaults))));
   std::swap(stage.scene, scene);
   description_ = draft.description();
   sources_ = stage.scene->sources();

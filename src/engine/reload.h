@@ -25,7 +25,7 @@ class Reload {
 
   Reload(std::string file, ScriptHost& host, PerformerHand& hand);
 
-  /// A stage whose scene has just run from its start, or has none: nothing else was done to it. [sim]
+  /// A stage whose scene has just run well from its start, or has none: nothing else was done to it. [sim]
   void begin(const Stage& stage, const SceneOptions& options);
   /// What a draft is made from now. `again`: of what the last good run has read, not of the disk. [sim]
   DraftOrder order(const Stage& stage, bool again);

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <optional>
 
 namespace limber {
 
@@ -15,23 +16,19 @@ bool same_default(const Row& row, const Row& before) {
   return std::equal(row.initial.begin(), row.initial.begin() + row.width, before.initial.begin());
 }
 
-std::array<double, 4> kept_values(const Row& row, const LiveParam& before) {
-  std::array<double, 4> values = row.initial;
-  if (row.type != before.row.type || !same_default(row, before.row)) return values;
+// the value as it is now; nothing when the default counts
+std::optional<std::array<double, 4>> kept_values(const Row& row, const LiveParam& before) {
+  if (row.type != before.row.type || !same_default(row, before.row)) return {};
+  std::array<double, 4> values{};
   if (row.type == RowType::choice) {
     // a choice is its label, wherever that stands now
     const auto found = std::find(row.choices.begin(), row.choices.end(), label(before.row, before.values[0]));
-    if (found != row.choices.end()) values[0] = static_cast<double>(found - row.choices.begin());
+    if (found == row.choices.end()) return {};
+    values[0] = static_cast<double>(found - row.choices.begin());
     return values;
   }
   for (std::size_t i = 0; i < row.width; i++) values[i] = std::clamp(before.values[i], row.low(i), row.high(i));
   return values;
-}
-
-bool same_value(const Row& row, const std::array<double, 4>& values, const LiveParam& before) {
-  if (row.type != before.row.type) return false;
-  if (row.type == RowType::choice) return label(row, values[0]) == label(before.row, before.values[0]);
-  return std::equal(values.begin(), values.begin() + row.width, before.values.begin());
 }
 
 }  // namespace
@@ -51,16 +48,16 @@ std::vector<LiveParam> ParamsNode::live() const {
 }
 
 std::uint64_t ParamsNode::keep(std::span<const LiveParam> before) {
-  std::uint64_t others = 0;
+  std::uint64_t defaults = 0;
   for (const Row& row : table().rows()) {
     const auto known =
         std::find_if(before.begin(), before.end(), [&](const LiveParam& p) { return p.row.name == row.name; });
     if (known == before.end()) continue;  // a new one
-    const std::array<double, 4> kept = kept_values(row, *known);
-    std::copy_n(kept.data(), row.width, store_.tell(id_, row));
-    if (!same_value(row, kept, *known)) others |= std::uint64_t{1} << row.index;
+    const std::optional<std::array<double, 4>> kept = kept_values(row, *known);
+    if (!kept) defaults |= std::uint64_t{1} << row.index;
+    std::copy_n((kept ? *kept : row.initial).data(), row.width, store_.tell(id_, row));
   }
-  return others;
+  return defaults;
 }
 
 }  // namespace limber

@@ -23,8 +23,7 @@ class ParamsNode {
   /// The rows with the values in force.
   std::vector<LiveParam> live() const;
   /// Takes over what the parameters of the run before hold: a value whose default stayed, within the new range and
-  /// choices. An edited default or another type starts at the default. The answer: rows that did not stay as they
-  /// were, a bit a row.
+  /// choices. An edited default or another type starts at the default: these are the answer, a bit a row.
   std::uint64_t keep(std::span<const LiveParam> before);
 
  private:

@@ -69,7 +69,7 @@ class Scene {
   void prepare();
   /// The run beside the show `before` (null: there was none) becomes the show: its handles are given the ids that
   /// things have in `world`; parameters, `state` and the beat of timers are handed over. The answer: rows of the
-  /// parameters that did not stay as they were. `before` may then be destroyed on any thread.
+  /// parameters that start at their defaults again. `before` may then be destroyed on any thread.
   std::uint64_t become_live(World& world, const std::function<NodeId(NodeId)>& live_id, Scene* before);
   /// The node of the scene's parameters, or a null id.
   NodeId params() const;

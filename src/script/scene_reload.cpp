@@ -40,14 +40,14 @@ std::uint64_t Scene::become_live(World& world, const std::function<NodeId(NodeId
   ScriptContext* const old = before == nullptr ? nullptr : before->context_.get();
   std::vector<LiveParam> live;
   if (old != nullptr && old->params != nullptr) live = old->params->live();
-  std::uint64_t others = 0;
+  std::uint64_t defaults = 0;
   if (has_params && old != nullptr && old->params != nullptr && &old->params->table() == table) {
     c.params = std::move(old->params);  // the same node, with all that it holds
   } else {
     if (old != nullptr) old->params = nullptr;
     if (has_params) {
       c.params = std::make_unique<ParamsNode>(world.store(), std::move(rows));
-      others = c.params->keep(live);
+      defaults = c.params->keep(live);
     }
   }
   if (old != nullptr) {
@@ -58,7 +58,7 @@ std::uint64_t Scene::become_live(World& world, const std::function<NodeId(NodeId
   }
   vm_->become_live(c.timers_at);
   c.host.plan_osc(c.plan);
-  return others;
+  return defaults;
 }
 
 NodeId Scene::params() const { return context_->params == nullptr ? NodeId{} : context_->params->id(); }
