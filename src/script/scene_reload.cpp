@@ -1,6 +1,7 @@
 // Scene: what a run beside the show is given of it, and how such a run becomes the show.
 #include <algorithm>
 
+#include "script/behavior_scripts.h"
 #include "script/context.h"
 #include "script/scene.h"
 #include "script/vm.h"
@@ -53,6 +54,7 @@ std::uint64_t Scene::become_live(World& world, const std::function<NodeId(NodeId
   if (old != nullptr) {
     vm_->take_state(before->vm_->state_text());
     c.timers_at = old->timers_at;
+    old->behaviors->close();  // it may go on another thread
     old->world->store().hide_view(old->view);
     old->world = nullptr;
   }

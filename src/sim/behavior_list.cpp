@@ -2,6 +2,7 @@
 #include "sim/behavior_list.h"
 
 #include <algorithm>
+#include <unordered_map>
 #include <utility>
 
 #include <fmt/format.h>
@@ -153,9 +154,11 @@ void BehaviorList::copy_values(const Behavior& from, Behavior& to) {
   Store& store = world_.store();
   const double* values = std::as_const(store).kept_block(from.id_);
   std::copy_n(values, from.type_->table->kept_width(), store.kept_block(to.id_));
+  store.say(to.id_, store.said(from.id_));  // a copy of what was said
 }
 
 void BehaviorList::copy(const Body& source, Body& copy) {
+  if (&source.world() != &world_) return;  // types and groups are its world's
   for (std::size_t i = 0; i < source.behaviors_.size(); i++) {
     const Behavior& from = *source.behaviors_[i];
     Result<std::unique_ptr<Behavior>> made = make(copy, from.type_, from.name(), from.setup_, from.group_);
@@ -212,6 +215,31 @@ void BehaviorList::follow_bodies() {
     if (entry.group != nullptr) entry.group->laid_out_ = false;
   }
   structure_ = world_.store().structure_version();  // newcomers are followed already
+}
+
+std::string BehaviorList::key_of(const Entry& entry) {
+  if (entry.group != nullptr) return "/" + entry.group->name();
+  return entry.single->body().name() + "/" + entry.single->name();
+}
+
+std::vector<std::string> BehaviorList::order() const {
+  std::vector<std::string> keys;
+  keys.reserve(entries_.size());
+  for (const Entry& entry : entries_) keys.push_back(key_of(entry));
+  return keys;
+}
+
+void BehaviorList::bring_into(const std::vector<std::string>& order) {
+  std::unordered_map<std::string_view, std::size_t> places;
+  for (std::size_t i = 0; i < order.size(); i++) places[order[i]] = i;
+  std::vector<std::pair<std::size_t, Entry>> placed;
+  for (Entry& entry : entries_) {
+    const auto found = places.find(key_of(entry));
+    placed.emplace_back(found == places.end() ? order.size() : found->second, std::move(entry));
+  }
+  std::stable_sort(placed.begin(), placed.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
+  entries_.clear();
+  for (auto& [place, entry] : placed) entries_.push_back(std::move(entry));
 }
 
 void BehaviorList::step(double dt) {

@@ -39,7 +39,8 @@ class BehaviorList {
   std::vector<BehaviorGroup*> groups() const;
   NodeId group_node() const { return group_node_; }
 
-  /// All behaviours of the source for its copy, with their values; groups get a member more.
+  /// All behaviours of the source for its copy, with their values; groups get a member more. Of a body of another world
+  /// there are none: whoever copies it makes them.
   void copy(const Body& source, Body& copy);
   void body_gone(Body& body);
   /// start() again before the next step, generators anew.
@@ -51,6 +52,10 @@ class BehaviorList {
 
   /// Members of groups, and targets, as bodies now are. Cheap while none has come, gone or changed.
   void follow_bodies();
+  /// Names in the order in which they act: "body/behaviour", and "/group".
+  std::vector<std::string> order() const;
+  /// Brings them into such an order; those that are not named act behind, as they did.
+  void bring_into(const std::vector<std::string>& order);
   /// Every behaviour that runs, in order.
   void step(double dt);
   /// Counts the steps.
@@ -71,6 +76,7 @@ class BehaviorList {
     std::unique_ptr<BehaviorGroup> group;
   };
 
+  static std::string key_of(const Entry& entry);
   Result<std::unique_ptr<Behavior>> make(Body& body, const std::shared_ptr<const BehaviorType>& type,
                                          const std::string& name, const std::shared_ptr<const BehaviorSetup>& setup,
                                          BehaviorGroup* group);
