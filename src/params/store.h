@@ -176,6 +176,7 @@ class Store {
   }
   std::uint32_t take_block(std::vector<double>& block, std::vector<std::vector<std::uint32_t>>& spare,
                            std::uint32_t width);
+  std::size_t leave_siblings(NodeId id);
   void release(NodeId id);
   void give_back(std::uint32_t slot);
   void keep_value(NodeId id, const Row& row);
