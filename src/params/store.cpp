@@ -199,10 +199,18 @@ void Store::give_back(std::uint32_t at) {
   nodes_[at] = {};
 }
 
+// its place among its siblings, which it leaves; what goes is mostly what came last
+std::size_t Store::leave_siblings(NodeId id) {
+  std::vector<NodeId>& siblings = nodes_[nodes_[id.slot].parent.slot].children;
+  const auto at = std::find(siblings.rbegin(), siblings.rend(), id).base() - 1;
+  const auto place = static_cast<std::size_t>(at - siblings.begin());
+  siblings.erase(at);
+  return place;
+}
+
 void Store::remove(NodeId id) {
   if (!alive(id) || id == root_) return;
-  std::vector<NodeId>& siblings = nodes_[nodes_[id.slot].parent.slot].children;
-  siblings.erase(std::find(siblings.begin(), siblings.end(), id));
+  leave_siblings(id);
   release(id);
   kept_version_++;
   structure_version_++;

@@ -207,6 +207,7 @@ class Store {
   }
   std::uint32_t take_block(std::vector<double>& block, std::vector<std::vector<std::uint32_t>>& spare,
                            std::uint32_t width);
+  std::size_t leave_siblings(NodeId id);
   void release(NodeId id);
   void give_back_blocks(std::uint32_t slot);
   void give_back(std::uint32_t slot);

@@ -69,10 +69,7 @@ void Store::turn_hidden(NodeId id, bool hide) {
 
 std::size_t Store::hide(NodeId id) {
   LIMBER_CHECK(alive(id) && id != root_);
-  std::vector<NodeId>& siblings = nodes_[nodes_[id.slot].parent.slot].children;
-  const auto at = std::find(siblings.begin(), siblings.end(), id);
-  const auto place = static_cast<std::size_t>(at - siblings.begin());
-  siblings.erase(at);
+  const std::size_t place = leave_siblings(id);
   turn_hidden(id, true);
   kept_version_++;
   structure_version_++;

@@ -55,7 +55,7 @@ std::uint64_t ScriptContext::hash(std::uint64_t start) {
 }
 
 void ScriptContext::begin_call() {
-  answer.call++;
+  answer.call = static_cast<std::int32_t>(static_cast<std::uint32_t>(answer.call) + 1);  // wraps after a day
   random_before_ = random;
   seeded_before_ = seeded_with;
   reset_wanted = false;

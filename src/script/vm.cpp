@@ -18,6 +18,8 @@ namespace limber {
 
 namespace {
 
+constexpr std::size_t kMostArguments = 4000;  // of a message that a handler hears; Lua's stack has an end
+
 void push(lua_State* L, std::string_view text) { lua_pushlstring(L, text.data(), text.size()); }
 
 std::string_view text_at(lua_State* L, int index) {
@@ -43,13 +45,24 @@ int guarded(lua_State* L) {
   return 1;
 }
 
-// a text in pieces: LuaJIT's compiler takes a while for a large one, and a hook can't stop it
+// LuaJIT's compiler looks through all jumps that are open when one more comes, and a hook can't stop it
+constexpr std::size_t kMostJumps = 2000;
+
+std::size_t jumps_in(std::string_view text) {
+  std::size_t count = 0;
+  for (const std::string_view word : {"break", "goto", "elseif"}) {
+    for (auto at = text.find(word); at != text.npos; at = text.find(word, at + word.size())) count++;
+  }
+  return count;
+}
+
+// a text in pieces, between which the compiler can be stopped
 struct Pieces {
   Guard& guard;
   const char* text;
   std::size_t left;
   static const char* next(lua_State*, void* self, std::size_t* size) {
-    constexpr std::size_t kPiece = 512;
+    constexpr std::size_t kPiece = 256;
     auto& pieces = *static_cast<Pieces*>(self);
     if (pieces.guard.stop_asked()) pieces.left = 0;
     *size = std::min(kPiece, pieces.left);
@@ -71,6 +84,12 @@ lua_State* open_state() {
 int load_text(lua_State* L) {
   std::size_t size = 0;
   const char* const text = lua_tolstring(L, 1, &size);
+  if (jumps_in({text, size}) > kMostJumps) {
+    lua_pushnil(L);
+    lua_pushfstring(L, "%s:1: a text may hold %d times break, goto, elseif; part it", lua_tostring(L, 2) + 1,
+                    static_cast<int>(kMostJumps));
+    return 2;
+  }
   Pieces pieces{*static_cast<Guard*>(lua_touserdata(L, lua_upvalueindex(1))), text, size};
   if (lua_loadx(L, &Pieces::next, &pieces, lua_tostring(L, 2), "t") != 0) {
     lua_pushnil(L);
@@ -208,10 +227,14 @@ void Vm::tick(double dt) {
 
 bool Vm::message(const Message& message, const Origin& origin) {
   lua_State* const L = state_.get();
+  if (message.args.size() > kMostArguments || lua_checkstack(L, static_cast<int>(message.args.size()) + 8) == 0) {
+    log_warning("{}: {} arguments are more than a script's handler takes ({})", printable(message.address),
+                message.args.size(), kMostArguments);
+    return false;
+  }
   lua_rawgeti(L, LUA_REGISTRYINDEX, message_);
   push(L, message.address);
   push(L, sender_text(origin));
-  luaL_checkstack(L, static_cast<int>(message.args.size()) + 8, "too many arguments");
   for (const Arg& arg : message.args) {
     switch (arg.kind) {
       case Arg::Kind::number:

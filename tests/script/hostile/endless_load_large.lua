@@ -1,11 +1,13 @@
--- A text whose jumps take the compiler long.
--- expect: 8-10: stopped
-local lines = { "local a while true do" }
-for i = 1, 8000 do lines[#lines + 1] = "if a then break end" end
-lines[#lines + 1] = "end"
-local text = table.concat(lines, "\n")
+-- Texts whose jumps take the compiler long: of so many jumps that it is refused, and of as many as may be.
+-- expect: 10-13: stopped
+local function text_of(jumps)
+  local lines = { "local a while true do" }
+  for i = 1, jumps do lines[#lines + 1] = "if a then break end" end
+  lines[#lines + 1] = "end"
+  return table.concat(lines, "\n")
+end
 sim:on_step(function()
-  while true do
-    load(text)
-  end
+  local large, small = text_of(8000), text_of(1990)
+  assert(load(large) == nil)
+  while true do load(small) end
 end)
