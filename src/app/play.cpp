@@ -5,12 +5,14 @@
 #include <csignal>
 #include <cstdio>
 #include <cstdlib>
+#include <optional>
 #include <semaphore>
 #include <thread>
 
 #include <fmt/format.h>
 
 #include "app/paths.h"
+#include "app/scene_watch.h"
 #include "base/build_info.h"
 #include "base/log.h"
 #include "base/text.h"
@@ -228,6 +230,8 @@ int play_scene(const PlayOptions& options, EngineOptions engine_options, const O
   Engine engine(link, std::move(engine_options));
   Network network(link, osc, live_offsets());
   ConsoleServer console(link, {.folder = "", .scene = printable(options.scene)});
+  std::optional<SceneWatch> scene_watch;
+  if (!options.fast || options.watch) scene_watch.emplace(link, engine);
   bool interrupted = false;
   {
     Show show(engine);
@@ -242,8 +246,10 @@ int play_scene(const PlayOptions& options, EngineOptions engine_options, const O
       fmt::print(stderr, "limber: playing headless; Ctrl+C ends it\n");
     }
     show.go();
+    if (scene_watch) scene_watch->start();
     interrupted = watch(show, engine, link, signals);
   }
+  scene_watch.reset();
   network.stop();
   console.stop();
   return finish(options, engine, interrupted);
