@@ -49,8 +49,14 @@ nlohmann::json as_json(const std::string& path, const Table& table, const Row& r
 constexpr const char* kHead = "address\tseed's message\tkind\ttype\tunit\trange\tdefault\tmeaning\n";
 
 std::vector<const Table*> classes() {
-  return {&World::table(), &Body::table(),      &Part::table(),       &Joint::table(),
-          &Motor::table(), &Transport::table(), &CounterNode::table()};
+  std::vector<const Table*> all = {&World::table(), &Body::table(), &Part::table(), &Joint::table(), &Motor::table()};
+  const BehaviorTypes types;
+  for (const auto& type : types.all()) {
+    all.push_back(type->table);
+    if (type->group_table != nullptr) all.push_back(type->group_table);
+  }
+  all.insert(all.end(), {&Transport::table(), &CounterNode::table()});
+  return all;
 }
 
 // messages that come from no row: the dispatch's, and the one that the network answers by itself

@@ -124,6 +124,7 @@ Result<void> BehaviorGroup::names_exist() const {
 }
 
 Result<void> BehaviorGroup::follow() {
+  Result<void> all_joined;
   std::vector<Part*> near;
   const Selection& neighbors = neighbor_selection();
   for (const auto& body : world_.bodies()) {
@@ -132,10 +133,10 @@ Result<void> BehaviorGroup::follow() {
       if (neighbors.means(part->name(), !part->is_static())) near.push_back(part.get());
     }
     if (member_of(*body) != nullptr || !has_any(*body, setup_.parts)) continue;
-    if (const Result<Behavior*> member = join(*body); !member) return Error{member.error()};
+    if (const Result<Behavior*> member = join(*body); !member && all_joined) all_joined = Error{member.error()};
   }
   if (neighbors_ == nullptr || !neighbors_->holds(near)) neighbors_ = world_.behaviors().neighbor_set(std::move(near));
-  return {};
+  return all_joined;
 }
 
 Result<Behavior*> BehaviorGroup::join(Body& body) {
