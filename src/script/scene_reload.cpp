@@ -59,6 +59,8 @@ std::uint64_t Scene::become_live(World& world, const std::function<NodeId(NodeId
     old->world = nullptr;
   }
   vm_->become_live(c.timers_at);
+  if (before != nullptr) before->disarm();
+  arm();
   c.host.plan_osc(c.plan);
   return defaults;
 }
