@@ -111,7 +111,7 @@ Vm::Vm(ScriptContext& context, VmMode wanted)
   load_prelude(context);
   keep_entries();
   context.behaviors->open(*this);
-  if (wanted == VmMode::live) guard_.arm();
+  if (wanted == VmMode::live) arm();
   collector_.emplace(state_.get(), guard_.memory());
 }
 
@@ -172,6 +172,7 @@ void Vm::keep_entries() {
     guard_.use(handler, stopped_fault, keep("failed"));
     lua_pushvalue(L, -1);
     entries_ = luaL_ref(L, LUA_REGISTRYINDEX);
+    warm_ = keep("warm");
     make_behavior_ = keep("make_behavior");
     renew_behavior_ = keep("renew_behavior");
     restore_behavior_ = keep("restore_behavior");
@@ -194,6 +195,14 @@ bool Vm::call(int arguments, int results) {
   LIMBER_CHECK(entry_caught_all);
   lua_settop(L, 0);
   return false;
+}
+
+// LuaJIT works at what scripts will call most before they do
+bool Vm::arm() {
+  if (!guard_.arm()) return false;
+  lua_rawgeti(state_.get(), LUA_REGISTRYINDEX, warm_);
+  call(0, 0);
+  return true;
 }
 
 Result<void> Vm::run(std::string_view text, std::string_view name, ScriptPlace& fault) {

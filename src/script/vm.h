@@ -57,7 +57,7 @@ class Vm {
   lua_State* state() const { return state_.get(); }
   VmMode mode() const { return guard_.mode(); }
   /// Draft to live, once the other Vm has gone or was disarmed; false while it has not.
-  bool arm() { return guard_.arm(); }
+  bool arm();
   void disarm() { guard_.disarm(); }
 
   /// `state` as plain data: text of its own, equal where the data are. [sim]
@@ -94,6 +94,7 @@ class Vm {
   int tick_ = -1;
   int message_ = -1;
   int names_ = -1;
+  int warm_ = -1;
   int make_behavior_ = -1;
   int renew_behavior_ = -1;
   int restore_behavior_ = -1;

@@ -40,14 +40,7 @@ BehaviorList::BehaviorList(World& world, NodeId physics)
 BehaviorList::~BehaviorList() { clear(); }
 
 void BehaviorList::clear() {
-  while (!entries_.empty()) {
-    const Entry& last = entries_.back();
-    if (last.group != nullptr) {
-      remove_group(*last.group);
-    } else {
-      remove(*last.single);
-    }
-  }
+  while (!entries_.empty()) remove_last();
 }
 
 Result<std::unique_ptr<Behavior>> BehaviorList::make(Body& body, const std::shared_ptr<const BehaviorType>& type,
@@ -78,6 +71,7 @@ Result<Behavior*> BehaviorList::add(Body& body, std::string_view type_name, std:
   auto shared = std::make_shared<const BehaviorSetup>(std::move(setup));
   Result<std::unique_ptr<Behavior>> behavior = make(body, *type, name, shared, nullptr);
   if (!behavior) return Error{behavior.error()};
+  note_made();
   entries_.push_back({std::move(*behavior), nullptr});
   return entries_.back().single.get();
 }
@@ -101,8 +95,28 @@ Result<BehaviorGroup*> BehaviorList::add_group(std::string_view type_name, std::
     while (!group->members_.empty()) remove(*group->members_.back());
     return Error{text};
   }
+  note_made();
   entries_.push_back({nullptr, std::move(group)});
   return entries_.back().group.get();
+}
+
+// what a guarded call has made goes again when it fails
+void BehaviorList::note_made() {
+  if (!world_.undo().active()) return;
+  const auto take_back = [](void* list, std::size_t count) {
+    auto& self = *static_cast<BehaviorList*>(list);
+    while (self.entries_.size() > count) self.remove_last();
+  };
+  world_.undo().note(take_back, this, entries_.size());
+}
+
+void BehaviorList::remove_last() {
+  const Entry& last = entries_.back();
+  if (last.group != nullptr) {
+    remove_group(*last.group);
+  } else {
+    remove(*last.single);
+  }
 }
 
 void BehaviorList::bury(std::unique_ptr<Behavior> behavior) {

@@ -83,6 +83,8 @@ class BehaviorList {
   std::unique_ptr<Behavior> renewed(Behavior& before, const std::shared_ptr<const BehaviorType>& type);
   void copy_values(const Behavior& from, Behavior& to);
   void say_fault(const Behavior& behavior) const;
+  void note_made();
+  void remove_last();
   void bury(std::unique_ptr<Behavior> behavior);
 
   World& world_;

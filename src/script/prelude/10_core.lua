@@ -28,6 +28,13 @@ local getinfo, format, sub, byte, concat = debug.getinfo, string.format, string.
 
 P.entry = {}       -- what C++ calls
 P.on_failure = {}  -- run after a guarded call that failed
+P.metas = {}       -- metatables of cdata by the number of the type
+local metatype = ffi.metatype
+function ffi.metatype(ctype, meta)
+  P.metas[tonumber(ffi.typeof(ctype))] = meta
+  return metatype(ctype, meta)
+end
+
 P.ffi, P.api, P.ctx, P.answer, P.view = ffi, api, ctx, answer, api.view(ctx)
 
 -- the text of the last answer

@@ -287,7 +287,10 @@ function P.finish(class)
   ffi.metatype(ctype, {
     __index = function(h, key)
       local get = getters[key]
-      if get then return get(h) end
+      if get then
+        local value = get(h)  -- no tail call: a getter returns to a Lua function, so that it can be compiled
+        return value
+      end
       return methods[key] or no_member(h, class, key)
     end,
     __newindex = function(h, key, value)

@@ -83,6 +83,8 @@ local function neighbor_parts(h)
   return instance.neighbor_parts
 end
 
+function P.empty_list() return keep_list({}, "warm", {}) end
+
 -- what every `self` has beside its parameters
 local getters = {
   name = function(h) return P.names[instance_of(h).handle] end,
