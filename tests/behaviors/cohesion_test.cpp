@@ -90,7 +90,9 @@ void compare(FlockRig& s, BehaviorGroup& group, double least, double most, doubl
     seen += m.count;
   }
   // of what can be seen at this distance something is seen
-  if (most > 2 * least && most >= 1) EXPECT_GT(seen, 0);
+  if (most > 2 * least && most >= 1) {
+    EXPECT_GT(seen, 0);
+  }
 }
 
 TEST(Cohesion, IsWhatLookingAtEveryPartGives) {

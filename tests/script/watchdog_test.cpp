@@ -30,7 +30,10 @@ bool compute_until(F&& end) {
 struct WatchdogTest : testing::Test {
   void SetUp() override {
     watch.owner = this;
-    watch.stop = [](Watch& w) { *static_cast<volatile int*>(&static_cast<WatchdogTest*>(w.owner)->stops) += 1; };
+    watch.stop = [](Watch& w) {
+      volatile int& stops = static_cast<WatchdogTest*>(w.owner)->stops;
+      stops = stops + 1;
+    };
     dog->add(watch, kMillisecond / 2);
   }
   void TearDown() override { dog->remove(watch); }
