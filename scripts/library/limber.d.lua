@@ -165,6 +165,7 @@ function warn(...) end
 ---@field parts part_list # read-only. In stream order; called, it walks those that a pattern matches.
 ---@field joints joint_list # read-only. In stream order; called, it walks those that a pattern matches.
 ---@field motors motor_list # read-only. In stream order; called, it walks those that a pattern matches.
+---@field behaviors behavior_list # read-only. In the order in which they were attached.
 ---@field position vec3like # m, -10000 .. 10000. The root's link frame, world; setting it moves the whole body rigidly.
 ---@field rotation quat # The root's link frame, world: x y z w; setting it turns the whole body about the root.
 ---@field linear_velocity vec3like # m/s, -10000 .. 10000. The root's; setting it gives the whole body this motion.
@@ -211,6 +212,18 @@ function body_:part(key) end
 ---@param key string|integer|joint
 ---@return joint
 function body_:joint(key) end
+
+---Attaches a behaviour: a built-in type, or a file of behaviors_lua/.
+---@param type string # Case, underscores and a trailing "behavior" don't matter.
+---@param name string
+---@param opts? behavior_opts # Whom it acts on (left out: all), `active`, and the type's parameters.
+---@return behavior
+function body_:add_behavior(type, name, opts) end
+
+---A behaviour by its name or number (-1: the last).
+---@param key string|integer|behavior
+---@return behavior
+function body_:behavior(key) end
 
 ---A motor by its name or number (-1: the last).
 ---@param key string|integer|motor
@@ -412,6 +425,10 @@ function shape_:add_child(child, position, rotation) end
 ---@field [integer] body
 ---@overload fun(self: sim, wanted?: string|body|(string|body)[]): fun(): body, integer
 
+---@class behavior_list
+---@field [integer] behavior
+---@overload fun(self: body, wanted?: string|behavior|(string|behavior)[]): fun(): behavior, integer
+
 ---@class part_list
 ---@field [integer] part
 ---@overload fun(self: body, wanted?: string|part|(string|part)[]): fun(): part, integer
@@ -435,7 +452,7 @@ function shape_:add_child(child, position, rotation) end
 ---@field substeps integer # 1 .. 1000, default 4. Equal internal steps that a tick is made of.
 ---@field solver_iterations integer # 1 .. 10000, default 50. Rounds of the contact and joint solver in each internal step.
 ---@field solver "iterative" # default iterative. How joints and contacts are solved.
----@field seed integer # 0 .. 9007199254740992. What every random draw derives from; counts from the next start.
+---@field seed integer # 0 .. 9007199254740992. What every random draw derives from: a behaviour's at once, a scene's from the next start.
 ---@field paused boolean # Time stands still; commands and OSC are still answered.
 ---@field speed number # × real time, 0.01 .. 100. How fast simulated time runs when it is paced.
 ---@field time number # read-only, s. Simulated time.
@@ -461,6 +478,18 @@ function sim:load_urdf(path, opts) end
 ---@param opts? body_opts
 ---@return body
 function sim:add_body(name, opts) end
+
+---Attaches a behaviour to several bodies, an instance each. What is written to the group goes to every member.
+---@param type string # Case, underscores and a trailing "behavior" don't matter.
+---@param name string
+---@param opts? group_opts
+---@return behavior_group
+function sim:add_group_behavior(type, name, opts) end
+
+---A group by its name.
+---@param name string|behavior_group
+---@return behavior_group
+function sim:group_behavior(name) end
 
 ---A body by its name or number (-1: the last). An error with the near names when there is none.
 ---@param key string|integer|body
@@ -684,6 +713,49 @@ function behavior_self_:due(interval) end
 ---@param radius number # m
 ---@return fun(): part, vec3, number
 function behavior_self_:neighbors(part, radius) end
+
+---A behaviour that is attached to a body; its parameters are properties.
+---@class behavior
+---@field name string # read-only.
+---@field alive boolean # read-only. Whether it is still attached.
+---@field type string # read-only.
+---@field body body # read-only.
+---@field active boolean # default true. Setting it, to whatever, lets one that failed try again.
+---@field error? string # read-only. Why it rests although it is active.
+---@field parts part_list # read-only.
+---@field joints joint_list # read-only.
+---@field motors motor_list # read-only.
+---@field [string] any # Its parameters.
+local behavior_ = {}
+
+---Detaches it.
+function behavior_:remove() end
+
+---@class behavior_opts
+---@field parts? string|integer|part|(string|part)[] # Names, patterns, "all".
+---@field joints? string|joint|(string|joint)[]
+---@field motors? string|motor|(string|motor)[]
+---@field active? boolean # default true.
+---@field [string] any # The type's parameters.
+
+---A behaviour of several bodies.
+---@class behavior_group
+---@field name string # read-only.
+---@field alive boolean # read-only.
+---@field type string # read-only.
+---@field active boolean
+---@field [string] any # Its parameters: what is written goes to every member.
+local behavior_group_ = {}
+
+---Takes it away from all its members.
+function behavior_group_:remove() end
+
+---@class group_opts
+---@field bodies? string|body|(string|body)[] # default "all".
+---@field parts? string|(string)[] # default "all". The own parts that it acts on.
+---@field neighbor_parts? string|(string)[] # Left out: as parts. Those that are looked at.
+---@field active? boolean # default true.
+---@field [string] any # The type's parameters.
 
 -- Beside these, scripts see the following names of Lua's own, as LuaJIT has them:
 -- assert bit bit.arshift bit.band bit.bnot bit.bor bit.bswap bit.bxor bit.lshift bit.rol bit.ror bit.rshift

@@ -342,6 +342,7 @@ void Engine::plan_osc(const OscPlan& plan) {
 }
 
 void Engine::print(std::string_view text) {
+  log_line(LogLevel::print, text);
   if (options_.print) {
     ScriptHost::print(text);
   } else {

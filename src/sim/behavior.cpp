@@ -177,7 +177,7 @@ Result<void> Behavior::resolve() {
   if (Result<void> exist = names_exist(body, "part", s.parts, body.parts()); !exist) return exist;
   if (Result<void> exist = names_exist(body, "joint", s.joints, body.joints()); !exist) return exist;
   if (Result<void> exist = names_exist(body, "motor", s.motors, body.motors()); !exist) return exist;
-  for (const Joint* joint : joints) {
+  for (const Joint* joint : joints_) {
     const bool named =
         std::find(s.joints.words().begin(), s.joints.words().end(), joint->name()) != s.joints.words().end();
     if (!by_joints || !named || joint->motor() != nullptr) continue;

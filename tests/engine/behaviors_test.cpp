@@ -149,7 +149,7 @@ TEST_F(Behaviors, AFaultIsToldOnceAndCounted) {
   show.outbox();
   show.ticks(5);
   EXPECT_EQ(show.outbox(),
-            (Texts{"/script/error behaviors_lua/harp.lua 12 /physics/body/arm1/behavior/harp: the string broke"}));
+            (Texts{"/script/error behaviors_lua/harp.lua 12 the string broke\nof /physics/body/arm1/behavior/harp"}));
   EXPECT_EQ(show.engine.faults(), faults + 1);
 }
 

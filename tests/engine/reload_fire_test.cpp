@@ -19,7 +19,7 @@ arm:add_part("base", ball, { mass = 0, position = vec3(0, 0, 1) })
 arm:add_part("tip", ball, { position = vec3(0.5, 0, 1) })
 arm:add_joint("j", "base", "tip", { position = vec3(0, 0, 1), axis = vec3(0, 1, 0) })
 arm:add_motor("j", { mode = "off" })
-params { { "wind", 0, min = 0, max = 100000 } }
+params { { "wind", 0, min = 0, max = 1e9 } }
 state.count = state.count or 0
 )";
   for (int i = 0, n = static_cast<int>(random.uniform(0, 6)); i < n; i++) {

@@ -229,11 +229,6 @@ TEST(SeedMessages, WhatTookFramesApartIsRefusedWithTheReason) {
   }
 }
 
-TEST(SeedMessages, BehavioursDoNotExistYet) {
-  Rig rig;
-  EXPECT_EQ(rig.send("/physics/behavior/parameter", "tip_wind", "active", 1).kind, Kind::unknown);
-}
-
 TEST(SeedMessages, EveryWritableRowHasItsMessage) {
   // derived: a row added to a table answers at once; nothing else is to be written
   Rig rig;

@@ -19,7 +19,12 @@ struct StoreUndoTest : testing::Test {
   NodeId toys = store.add_group(store.root(), "toys");
   NodeId id = store.add(Toy::table(), toys, "bear", &toy);
   void SetUp() override {
+    begin();
     store.apply_marks();
+    begin();
+  }
+  // a toy whose effects count from here on
+  void begin() {
     toy = {};
     toy.store = &store;
     toy.id = id;
@@ -89,6 +94,8 @@ TEST_F(StoreUndoTest, AnEffectThatRanMeanwhileRunsAgain) {
 TEST_F(StoreUndoTest, EffectsOfOthersKeepTheirTurn) {
   Toy other;
   const NodeId second = store.add(Toy::table(), toys, "hare", &other);
+  other.store = &store;
+  other.id = second;
   store.apply_marks();
   // only the failing call marked the first; what is marked after it must not run ahead of others through that
   store.begin_undo();

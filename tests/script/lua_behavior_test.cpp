@@ -98,7 +98,7 @@ TEST(LuaBehavior, WrongMembersAreExplained) {
                 "behavior 'ball/it': due takes the name of a parameter in quotes, not 500; there are: speed");
   EXPECT_EQ(step_says("self:due('way')"),
             at + "behavior 'ball/it': 'way' is no number of milliseconds; due takes the name of a number");
-  EXPECT_EQ(step_says("self:remove()").substr(0, 71),
+  EXPECT_EQ(step_says("self:remove()").substr(0, 72),
             at + "behavior 'ball/it' has no property 'remove'; t");
 }
 

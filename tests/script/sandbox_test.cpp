@@ -145,7 +145,7 @@ TEST(Sandbox, LoadRefusesWorkingBytecode) {
 TEST(Sandbox, LoadRefusesWhatTakesTheCompilerLong) {
   EXPECT_EQ(error_of("local t = {} for i = 1, 2001 do t[i] = 'if a then goto e end' end "
                      "assert(load(table.concat(t, ' ') .. ' ::e::', 'mine'))"),
-            "mine:1: a text may hold 2000 times break, goto, elseif; part it");
+            "scripts/scene.lua:1: mine:1: a text may hold 2000 times break, goto, elseif; part it");
   EXPECT_EQ(error_of("load('return 1', 'n', 't', 5)"), "scripts/scene.lua:1: load's environment is a table, not 5");
 }
 

@@ -46,8 +46,8 @@ const std::vector<Deed>& deeds() {
          ball.apply_force_at({1, 2, 3}, {0, 0, 0});
        }},
       {"impulse",
-       [](Stage&, Body& arm, Part&) {
-         arm.root()->apply_impulse_at({1, 2, 3}, {0, 0, 1});
+       [](Stage&, Body&, Part& ball) {
+         ball.apply_impulse_at({1, 2, 3}, {0, 0, 1});
        }},
       {"clear", [](Stage&, Body&, Part& ball) { ball.clear_forces(); }},
       {"pose",

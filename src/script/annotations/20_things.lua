@@ -8,6 +8,7 @@
 ---@field parts part_list # read-only. In stream order; called, it walks those that a pattern matches.
 ---@field joints joint_list # read-only. In stream order; called, it walks those that a pattern matches.
 ---@field motors motor_list # read-only. In stream order; called, it walks those that a pattern matches.
+---@field behaviors behavior_list # read-only. In the order in which they were attached.
 ---@rows body
 local body_ = {}
 
@@ -44,6 +45,18 @@ function body_:part(key) end
 ---@param key string|integer|joint
 ---@return joint
 function body_:joint(key) end
+
+---Attaches a behaviour: a built-in type, or a file of behaviors_lua/.
+---@param type string # Case, underscores and a trailing "behavior" don't matter.
+---@param name string
+---@param opts? behavior_opts # Whom it acts on (left out: all), `active`, and the type's parameters.
+---@return behavior
+function body_:add_behavior(type, name, opts) end
+
+---A behaviour by its name or number (-1: the last).
+---@param key string|integer|behavior
+---@return behavior
+function body_:behavior(key) end
 
 ---A motor by its name or number (-1: the last).
 ---@param key string|integer|motor
@@ -152,6 +165,10 @@ function shape_:add_child(child, position, rotation) end
 ---@class body_list
 ---@field [integer] body
 ---@overload fun(self: sim, wanted?: string|body|(string|body)[]): fun(): body, integer
+
+---@class behavior_list
+---@field [integer] behavior
+---@overload fun(self: body, wanted?: string|behavior|(string|behavior)[]): fun(): behavior, integer
 
 ---@class part_list
 ---@field [integer] part

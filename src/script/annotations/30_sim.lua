@@ -27,6 +27,18 @@ function sim:load_urdf(path, opts) end
 ---@return body
 function sim:add_body(name, opts) end
 
+---Attaches a behaviour to several bodies, an instance each. What is written to the group goes to every member.
+---@param type string # Case, underscores and a trailing "behavior" don't matter.
+---@param name string
+---@param opts? group_opts
+---@return behavior_group
+function sim:add_group_behavior(type, name, opts) end
+
+---A group by its name.
+---@param name string|behavior_group
+---@return behavior_group
+function sim:group_behavior(name) end
+
 ---A body by its name or number (-1: the last). An error with the near names when there is none.
 ---@param key string|integer|body
 ---@return body

@@ -40,3 +40,46 @@ function behavior_self_:due(interval) end
 ---@param radius number # m
 ---@return fun(): part, vec3, number
 function behavior_self_:neighbors(part, radius) end
+
+---A behaviour that is attached to a body; its parameters are properties.
+---@class behavior
+---@field name string # read-only.
+---@field alive boolean # read-only. Whether it is still attached.
+---@field type string # read-only.
+---@field body body # read-only.
+---@field active boolean # default true. Setting it, to whatever, lets one that failed try again.
+---@field error? string # read-only. Why it rests although it is active.
+---@field parts part_list # read-only.
+---@field joints joint_list # read-only.
+---@field motors motor_list # read-only.
+---@field [string] any # Its parameters.
+local behavior_ = {}
+
+---Detaches it.
+function behavior_:remove() end
+
+---@class behavior_opts
+---@field parts? string|integer|part|(string|part)[] # Names, patterns, "all".
+---@field joints? string|joint|(string|joint)[]
+---@field motors? string|motor|(string|motor)[]
+---@field active? boolean # default true.
+---@field [string] any # The type's parameters.
+
+---A behaviour of several bodies.
+---@class behavior_group
+---@field name string # read-only.
+---@field alive boolean # read-only.
+---@field type string # read-only.
+---@field active boolean
+---@field [string] any # Its parameters: what is written goes to every member.
+local behavior_group_ = {}
+
+---Takes it away from all its members.
+function behavior_group_:remove() end
+
+---@class group_opts
+---@field bodies? string|body|(string|body)[] # default "all".
+---@field parts? string|(string)[] # default "all". The own parts that it acts on.
+---@field neighbor_parts? string|(string)[] # Left out: as parts. Those that are looked at.
+---@field active? boolean # default true.
+---@field [string] any # The type's parameters.

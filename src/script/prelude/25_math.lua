@@ -22,12 +22,11 @@ end
 -- math.random of a file: slot -1 is the scene's, -2 that of behaviour file 0, and so on
 function P.make_random(slot)
   return function(low, high)
-    local u = api.random_uniform(ctx, slot, 0)
-    if low == nil then return u end
+    if low == nil then return api.random_uniform(ctx, slot, 0) end
     if high == nil then low, high = 1, low end
     low, high = math.floor(want_number(low, "math.random")), math.floor(want_number(high, "math.random"))
     if low > high then fail("math.random: nothing lies between %d and %d", low, high) end
-    return low + math.floor(u * (high - low + 1))
+    return low + math.floor(api.random_uniform(ctx, slot, 0) * (high - low + 1))
   end
 end
 
