@@ -7,7 +7,7 @@ return behavior {
   params = {
     { "radius", 1.5, min = 0.01, max = 100, unit = "m", doc = "How far each one sees." },
     { "distance", 0.5, min = 0, max = 100, unit = "m", doc = "Others nearer than this are avoided." },
-    { "cohesion", 1, min = 0, max = 100, unit = "1/s²", doc = "Acceleration for each metre to the middle of the others." },
+    { "cohesion", 1, min = 0, max = 100, doc = "Acceleration in m/s² for each metre to the middle of the others." },
     { "alignment", 2, min = 0, max = 100, unit = "1/s", doc = "Acceleration for each m/s of difference to the others." },
     { "separation", 4, min = 0, max = 100, unit = "m/s²", doc = "Acceleration away from one that is at hand." },
     { "speed", 1, min = 0, max = 100, unit = "m/s", doc = "The speed that each one likes." },

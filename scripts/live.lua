@@ -39,7 +39,7 @@ local arm = sim:load_urdf("urdf/arm6.urdf", { name = "arm" })
 arm:add_behavior("breathe", "breath", { rate = 0.2, depth = 0.5, lag = 0.8 })
 
 -- STEP 5. A wind at its tip, of a built-in behaviour. Give it strength: max_amp = 5.
-arm:add_behavior("random_force", "wind", { parts = -1, max_amp = 0, rand_interval = 1500 })
+arm:add_behavior("random_force", "wind", { parts = "tip", max_amp = 0, rand_interval = 1500 })
 
 -- STEP 6. What happens at each beat. Callbacks are hands: they act, and a new version simply takes over. `state` is
 -- kept when you save: the beats go on counting.

@@ -9,7 +9,7 @@ local kArena = 5 -- m, the radius in which they stay
 sim.gravity = vec3(0, 0, -9.81)
 
 params {
-  { "home", 1.5, min = 0, max = 20, unit = "N/kg", doc = "How strongly the edge of the arena turns them back." },
+  { "home", 1.5, min = 0, max = 20, unit = "m/s²", doc = "How strongly the edge of the arena turns them back." },
 }
 
 local floor = sim:add_body("floor")

@@ -9,7 +9,7 @@ local kSphere = sim:add_sphere_shape("plot", 0.05)
 local kInertia = 0.4 * 0.05 * 0.05 -- kg·m², of a ball of one kilogram
 local plots = {} -- in the order in which they are printed
 
--- a ball of one kilogram, far from those of other pictures
+-- a ball of one kilogram, far from those of other pictures, within the ten kilometres of the world
 local rows = 0
 local function ball(name, position)
   local body = sim:add_body(name)
@@ -18,7 +18,7 @@ local function ball(name, position)
 end
 local function row()
   rows = rows + 1
-  return vec3(0, 1000 * rows, 0)
+  return vec3(0, 100 * rows, 0)
 end
 
 local function plot(name, spec)
@@ -33,7 +33,7 @@ local function sweep(spec, label, from, to, n, make, read)
   local place = row()
   for i = 1, n do
     local x = from + (to - from) * (i - 1) / (n - 1)
-    curve.bodies[i] = { x = x, body = make(x, spec.name .. #spec .. "_" .. i, place + vec3(0, 0, 100 * i)), read = read }
+    curve.bodies[i] = { x = x, body = make(x, spec.name .. #spec .. "_" .. i, place + vec3(0, 0, 30 * i)), read = read }
   end
   spec[#spec + 1] = curve
 end
@@ -235,7 +235,10 @@ sim:on_step(function()
   for _, spec in ipairs(plots) do
     for _, curve in ipairs(spec) do
       if ticks == 1 and curve.bodies then
-        for i, one in ipairs(curve.bodies) do curve.points[i] = { one.x, one.read(one.body, one.x) } end
+        for i, one in ipairs(curve.bodies) do
+          curve.points[i] = { one.x, one.read(one.body, one.x) }
+          one.body.enabled = false -- it has told what it had to tell
+        end
       elseif ticks > 0 and curve.read then
         curve.points[ticks] = { ticks * sim.timestep, curve.read() }
       end

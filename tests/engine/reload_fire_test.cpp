@@ -126,8 +126,8 @@ TEST(ReloadUnderFire, ResetsInBetween) {
     }
     saved = true;
   });
-  while (!saved.load()) {
-    edited.show().send("/transport/reset");
+  for (int resets = 0; !saved.load(); resets++) {
+    if (resets < 200) edited.show().send("/transport/reset");
     std::this_thread::yield();
   }
   editor.join();
