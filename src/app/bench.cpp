@@ -10,6 +10,7 @@
 
 #include "app/bench_arms.h"
 #include "app/bench_osc.h"
+#include "app/bench_reload.h"
 #include "app/bench_spawn.h"
 #include "base/build_info.h"
 #include "base/text.h"
@@ -95,6 +96,8 @@ const std::vector<BenchScene>& bench_scenes() {
       {"arm-quality", "one arm hanging, one internal step of 1/60 s: how far joints part and servos miss",
        &run_arm_quality},
       {"spawn", "load urdf/arm17.urdf and make 1000 copies", &bench_spawn},
+      {"reload", "a scene saved while it plays: how soon the new one is in force, and what its ticks feel of it",
+       &bench_reload},
       {"osc-in", "messages a second from a socket into rows; a burst of 10 000", &bench_osc_in},
       {"osc-latency", "from message to answer: /ping, and a value in force", &bench_osc_latency},
       {"osc-out", "frames of 1000 bodies in three streams", &bench_osc_out},

@@ -87,6 +87,8 @@ CLI::App* add_play(CLI::App& app, PlayOptions& o) {
   play->add_option("--package-path", o.package_paths, "a folder for package:// in URDF files")
       ->type_name("DIR")
       ->allow_extra_args(false);
+  play->add_flag("--watch", o.watch,
+                 "with --fast too, run the scene again when one of its files is saved; else it is done anyway");
   play->add_flag("--strict", o.strict, "end with 1 at any script error, refused value or health event");
   play->add_flag("--hash", o.hash, "print the state hash at the end");
   return play;

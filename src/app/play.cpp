@@ -5,12 +5,14 @@
 #include <csignal>
 #include <cstdio>
 #include <cstdlib>
+#include <optional>
 #include <semaphore>
 #include <thread>
 
 #include <fmt/format.h>
 
 #include "app/paths.h"
+#include "app/scene_watch.h"
 #include "base/build_info.h"
 #include "base/log.h"
 #include "base/text.h"
@@ -217,6 +219,8 @@ int play_scene(const PlayOptions& options, EngineOptions engine_options, const O
   EngineLink link;
   Engine engine(link, std::move(engine_options));
   Network network(link, osc, live_offsets());
+  std::optional<SceneWatch> scene_watch;
+  if (!options.fast || options.watch) scene_watch.emplace(link, engine);
   bool interrupted = false;
   {
     Show show(engine);
@@ -228,8 +232,10 @@ int play_scene(const PlayOptions& options, EngineOptions engine_options, const O
     for (const std::string& line : network.lines()) fmt::print(stderr, "limber: {}\n", line);
     if (!options.fast) fmt::print(stderr, "limber: playing headless; Ctrl+C ends it\n");
     show.go();
+    if (scene_watch) scene_watch->start();
     interrupted = watch(show, engine, link, signals);
   }
+  scene_watch.reset();
   network.stop();
   return finish(options, engine, interrupted);
 }

@@ -14,6 +14,7 @@ struct PlayOptions {
   bool fast = false;
   bool hash = false;
   bool strict = false;
+  bool watch = false;  ///< Watch the scene's files under `fast` too.
   std::optional<std::uint64_t> ticks;
   std::optional<double> duration;
   std::optional<std::uint64_t> seed;

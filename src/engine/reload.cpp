@@ -66,6 +66,7 @@ Reload::End Reload::take(Draft& draft, Stage& stage) {
   if (from_disk) {
     keep_files({});
     say_mended();
+    log_info("{} was read again", stage.scene->fault().file);
   }
   return End::applied;
 }

@@ -16,6 +16,9 @@ class FileStamp {
   /// is kept. A new time on the old content changes nothing.
   bool holds(const std::string& path);
 
+  bool readable() const { return readable_; }
+  /// hash_bytes of all that the file holds; 0 when it can't be read.
+  std::uint64_t content() const { return content_; }
   /// By content.
   bool operator==(const FileStamp& other) const { return readable_ == other.readable_ && content_ == other.content_; }
 
