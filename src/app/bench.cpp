@@ -9,6 +9,8 @@
 #include <fmt/format.h>
 
 #include "app/bench_arms.h"
+#include "app/bench_flock.h"
+#include "app/bench_lua.h"
 #include "app/bench_osc.h"
 #include "app/bench_reload.h"
 #include "app/bench_spawn.h"
@@ -34,6 +36,11 @@ Json run_arm_quality(const BenchOptions& options) {
   scene.substeps = 1;
   scene.hanging = true;
   return bench_arms(scene, 60, options.ticks > 0 ? options.ticks : 360, options.compare_raw);
+}
+
+template <int Bodies>
+Json run_flock(const BenchOptions& options) {
+  return bench_flock(Bodies, options);
 }
 
 std::string cpu_name() {
@@ -95,6 +102,11 @@ const std::vector<BenchScene>& bench_scenes() {
       {"arms-1000", "1000 such arms", &run_arms<1000, 16>},
       {"arm-quality", "one arm hanging, one internal step of 1/60 s: how far joints part and servos miss",
        &run_arm_quality},
+      {"flock-1k", "1000 bodies with 30 neighbours each: cohesion and alignment", &run_flock<1000>},
+      {"flock-10k", "10 000 such bodies", &run_flock<10000>},
+      {"flock-100k", "100 000 such bodies", &run_flock<100000>},
+      {"lua-twin", "each built-in behaviour and its twin in Lua, 10 000 parts each", &bench_lua_twin},
+      {"lua-many", "1000 instances of a small behaviour in Lua", &bench_lua_many},
       {"spawn", "load urdf/arm17.urdf and make 1000 copies", &bench_spawn},
       {"reload", "a scene saved while it plays: how soon the new one is in force, and what its ticks feel of it",
        &bench_reload},

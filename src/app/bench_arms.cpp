@@ -27,7 +27,8 @@ void set(Store& store, NodeId id, const Table& table, const char* row, std::vect
 
 // what surrounds physics in a tick, as a part of the tick
 double surroundings(const PhaseTimes& t) {
-  return (t.commands + t.scripts + t.effects + t.readouts + t.snapshot + t.collector) / (t.total() + t.collector);
+  return (t.commands + t.scripts + t.behaviors + t.effects + t.readouts + t.snapshot + t.collector) /
+         (t.total() + t.collector);
 }
 
 // one side's samples
@@ -61,11 +62,12 @@ struct Side {
 
 // the engine's phases
 struct Phases {
-  Samples commands, scripts, effects, physics, readouts, snapshot, collector, around, snapshot_part;
+  Samples commands, scripts, behaviors, effects, physics, readouts, snapshot, collector, around, snapshot_part;
 
   void add(const PhaseTimes& t) {
     commands.add(t.commands);
     scripts.add(t.scripts);
+    behaviors.add(t.behaviors);
     effects.add(t.effects);
     physics.add(t.physics);
     readouts.add(t.readouts);
@@ -76,9 +78,9 @@ struct Phases {
   }
   Json microseconds() const {
     const auto median = [](const Samples& s) { return Samples::in_microseconds(s.at(0.5)); };
-    return {{"commands", median(commands)},  {"scripts", median(scripts)},   {"effects", median(effects)},
-            {"physics", median(physics)},    {"readouts", median(readouts)}, {"snapshot", median(snapshot)},
-            {"collector", median(collector)}};
+    return {{"commands", median(commands)}, {"scripts", median(scripts)},    {"behaviors", median(behaviors)},
+            {"effects", median(effects)},   {"physics", median(physics)},    {"readouts", median(readouts)},
+            {"snapshot", median(snapshot)}, {"collector", median(collector)}};
   }
 };
 

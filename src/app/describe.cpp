@@ -9,32 +9,13 @@
 #include <nlohmann/json.hpp>
 
 #include "app/paths.h"
-#include "base/log.h"
 #include "base/text.h"
 #include "engine/engine.h"
+#include "params/row_text.h"
 
 namespace limber {
 
 namespace {
-
-std::string values_text(const Row& row) {
-  if (row.kind == RowKind::action) return "";
-  if (!row.choices.empty()) return fmt::format("{}", fmt::join(row.choices, "|"));
-  if (row.type == RowType::boolean || row.type == RowType::flags3) return "true|false";
-  if (!std::isfinite(row.min) && !std::isfinite(row.max)) return "any";
-  return range_text(row);
-}
-
-std::string initial_text(const Row& row) {
-  if (!row.writable()) return "";
-  if (!row.choices.empty()) return row.choices[static_cast<std::size_t>(row.initial[0])];
-  if (row.type == RowType::boolean || row.type == RowType::flags3) {
-    std::vector<std::string_view> truths;
-    for (std::uint32_t i = 0; i < row.width; i++) truths.emplace_back(row.initial[i] != 0 ? "true" : "false");
-    return fmt::format("{}", fmt::join(truths, " "));
-  }
-  return fmt::format("{:g}", fmt::join(row.initial.begin(), row.initial.begin() + row.width, " "));
-}
 
 void line(std::string& out, const std::string& path, const Table& table, const Row& row) {
   out += fmt::format("{}/{}\t{}\t{}\t{}\t{}\t{}\t{}\t{}\n", path, row.name, Dispatch::seed_address(table, row),
@@ -68,8 +49,14 @@ nlohmann::json as_json(const std::string& path, const Table& table, const Row& r
 constexpr const char* kHead = "address\tseed's message\tkind\ttype\tunit\trange\tdefault\tmeaning\n";
 
 std::vector<const Table*> classes() {
-  return {&World::table(), &Body::table(),      &Part::table(),       &Joint::table(),
-          &Motor::table(), &Transport::table(), &CounterNode::table()};
+  std::vector<const Table*> all = {&World::table(), &Body::table(), &Part::table(), &Joint::table(), &Motor::table()};
+  const BehaviorTypes types;
+  for (const auto& type : types.all()) {
+    all.push_back(type->table);
+    if (type->group_table != nullptr) all.push_back(type->group_table);
+  }
+  all.insert(all.end(), {&Transport::table(), &CounterNode::table()});
+  return all;
 }
 
 // messages that come from no row: the dispatch's, and the one that the network answers by itself

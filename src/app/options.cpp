@@ -11,10 +11,13 @@
 #include <fmt/format.h>
 #include <CLI/CLI.hpp>
 
+#include "app/annotate.h"
 #include "app/bench.h"
+#include "app/console.h"
 #include "app/describe.h"
 #include "app/doctor.h"
 #include "app/inspect.h"
+#include "app/new.h"
 #include "app/paths.h"
 #include "app/play.h"
 #include "base/build_info.h"
@@ -25,14 +28,17 @@ namespace limber {
 namespace {
 
 constexpr int kUsage = 2;
-constexpr std::array<std::string_view, 5> kCommands = {"play", "inspect", "describe", "bench", "doctor"};
+constexpr std::array<std::string_view, 8> kCommands = {"play",     "console", "new",      "inspect",
+                                                       "describe", "bench",   "annotate", "doctor"};
 
 constexpr const char* kAbout =
     "Limber: a live simulator of actuated, articulated bodies, scripted in Lua, played over OSC.\n\n"
     "  limber                                       plays scripts/arms.lua\n"
     "  limber my.lua --osc-in 0.0.0.0:9003          another scene, answering the whole network\n"
     "  oscsend 127.0.0.1 9003 /physics/sim/gravity f -1.6\n"
-    "  limber my.lua --fast --duration 10 --hash    ten simulated seconds, as fast as it can\n";
+    "  limber my.lua --fast --duration 10 --hash    ten simulated seconds, as fast as it can\n"
+    "  limber console -e sim.time                   asks the one that plays, in Lua\n"
+    "  limber new show my_show                      a folder to begin with\n";
 
 constexpr const char* kExitCodes =
     "Exit codes: 0 fine; 1 the input is at fault; 2 wrong usage; 3 the machine is at fault (a port taken, say).\n"
@@ -118,8 +124,11 @@ std::optional<std::string> mistyped_command(int argc, char** argv) {
 struct CommandLine {
   PlayOptions play;
   BenchOptions bench;
-  std::string robot;  // inspect
-  std::string scene;  // describe
+  std::string robot;        // inspect
+  std::string scene;        // describe
+  std::string definitions;  // annotate
+  ConsoleCommand console;
+  NewCommand fresh;
   bool json = false;
   std::vector<std::string> package_paths;
 };
@@ -151,6 +160,29 @@ void add_bench(CLI::App& app, CommandLine& line) {
       ->check(whole_number());
 }
 
+void add_console(CLI::App& app, ConsoleCommand& command) {
+  CLI::App* console = app.add_subcommand("console", "a Lua console of the scene that plays in another terminal");
+  console->footer(
+      "At a terminal: Tab completes, the arrows find what was typed before, Ctrl+D leaves.\n"
+      "  limber console -e 'sim.time'                 one value\n"
+      "  echo 'sim.gravity = vec3()' | limber console lines of a pipe; exit code 1 when any had an error");
+  console->add_option("pid", command.pid, "which program, when several play")->type_name("PID");
+  console->add_option("-e,--evaluate", command.expression, "evaluate this and end")->type_name("LUA");
+}
+
+void add_new(CLI::App& app, NewCommand& command) {
+  CLI::App* fresh = app.add_subcommand("new", "a commented start of a show, a scene or a behavior");
+  fresh->require_subcommand(1);
+  const auto add = [&](const char* word, NewCommand::What what, const char* option, const char* about) {
+    CLI::App* kind = fresh->add_subcommand(word, about);
+    kind->add_option(option, command.name)->required()->type_name("");
+    kind->callback([&command, what] { command.what = what; });
+  };
+  add("show", NewCommand::What::show, "DIR", "a folder of its own: a scene, a robot, settings for editors");
+  add("scene", NewCommand::What::scene, "NAME", "scripts/NAME.lua in the show around this folder");
+  add("behavior", NewCommand::What::behavior, "NAME", "behaviors_lua/NAME.lua in the show around this folder");
+}
+
 // what was wrong, as CLI11 tells it; for an option that there is not, the near one
 std::string usage_text(const CLI::App& app, const CLI::ParseError& error) {
   const CLI::App* command = app.get_subcommands().empty() ? &app : app.get_subcommands().front();
@@ -180,6 +212,10 @@ int run_command_line(int argc, char** argv) {
   add_inspect(app, line);
   add_describe(app, line);
   add_bench(app, line);
+  add_console(app, line.console);
+  add_new(app, line.fresh);
+  CLI::App* annotate = app.add_subcommand("annotate", "definitions of all that scripts see, for editors (LuaCATS)");
+  annotate->add_option("file", line.definitions, "where they go; left out: stdout")->type_name("FILE");
   app.add_subcommand("doctor", "what works on this machine: ports, buffers, data");
 
   if (const auto mistyped = mistyped_command(argc, argv)) {
@@ -198,6 +234,9 @@ int run_command_line(int argc, char** argv) {
   const std::string command = app.get_subcommands().front()->get_name();
   if (command == "inspect") return inspect_command(line.robot, line.json, line.package_paths);
   if (command == "describe") return describe_command(line.scene, line.json);
+  if (command == "console") return console_command(line.console);
+  if (command == "new") return new_command(line.fresh);
+  if (command == "annotate") return annotate_command(line.definitions);
   if (command == "bench") return bench_command(line.bench);
   if (command == "doctor") return doctor_command();
   return play_command(line.play);

@@ -16,6 +16,7 @@
 #include "base/build_info.h"
 #include "base/log.h"
 #include "base/text.h"
+#include "console/server.h"
 #include "engine/engine.h"
 #include "osc/network.h"
 
@@ -196,7 +197,7 @@ bool watch(const Show& show, Engine& engine, const EngineLink& link, const sigse
     for (int i = 0; i < 3 && !show.over(); i++) {
       if (listen(signals) == Heard::end) break;
     }
-    if (!show.over()) leave("ended in the middle of a tick: a function of the scene does not return");
+    if (!show.over()) leave("ended in the middle of a tick that takes seconds: fewer substeps or solver_iterations would help");
     return true;
   }
   return false;
@@ -214,11 +215,21 @@ int finish(const PlayOptions& options, Engine& engine, bool interrupted) {
   return kFine;
 }
 
+// a show without a console is a show; batches have none, as they have no ports
+void open_console(ConsoleServer& console) {
+  if (const Result<void> open = console.start(); !open) {
+    log_warning("there is no console: {}", open.error());
+    return;
+  }
+  fmt::print(stderr, "limber: console {}\n", console.path());
+}
+
 int play_scene(const PlayOptions& options, EngineOptions engine_options, const OscOptions& osc,
                const sigset_t& signals) {
   EngineLink link;
   Engine engine(link, std::move(engine_options));
   Network network(link, osc, live_offsets());
+  ConsoleServer console(link, {.folder = "", .scene = printable(options.scene)});
   std::optional<SceneWatch> scene_watch;
   if (!options.fast || options.watch) scene_watch.emplace(link, engine);
   bool interrupted = false;
@@ -230,13 +241,17 @@ int play_scene(const PlayOptions& options, EngineOptions engine_options, const O
     if (!show.result()) return fail(kInput, show.result().error());
     if (const Result<void> open = network.start(); !open) return fail(kMachine, open.error());
     for (const std::string& line : network.lines()) fmt::print(stderr, "limber: {}\n", line);
-    if (!options.fast) fmt::print(stderr, "limber: playing headless; Ctrl+C ends it\n");
+    if (!options.fast) {
+      open_console(console);
+      fmt::print(stderr, "limber: playing headless; Ctrl+C ends it\n");
+    }
     show.go();
     if (scene_watch) scene_watch->start();
     interrupted = watch(show, engine, link, signals);
   }
   scene_watch.reset();
   network.stop();
+  console.stop();
   return finish(options, engine, interrupted);
 }
 

@@ -12,12 +12,13 @@ namespace limber {
 namespace {
 
 constexpr std::size_t kRing = 1000;
+constexpr std::size_t kMostText = 4096;  // of a line in the ring, bytes
 
 struct Log {
   std::mutex mutex;
   std::array<LogLine, kRing> ring;
   std::uint64_t count = 0;
-  std::array<std::uint64_t, 3> per_level{};
+  std::array<std::uint64_t, 4> per_level{};
   bool to_stderr = true;
 };
 
@@ -34,8 +35,8 @@ void log_line(LogLevel level, std::string_view text) {
   const std::scoped_lock lock(log.mutex);
   log.count++;
   log.per_level[static_cast<std::size_t>(level)]++;
-  log.ring[log.count % kRing] = {log.count, level, shown};
-  if (!log.to_stderr) return;
+  log.ring[log.count % kRing] = {log.count, level, shortened(shown, kMostText)};
+  if (!log.to_stderr || level == LogLevel::print) return;
   const char* mark = level == LogLevel::error ? "error: " : level == LogLevel::warning ? "warning: " : "";
   std::fprintf(stderr, "limber: %s%s\n", mark, shown.c_str());
 }
@@ -47,6 +48,12 @@ std::vector<LogLine> log_since(std::uint64_t seen) {
   std::vector<LogLine> lines;
   for (std::uint64_t i = std::max(seen, oldest) + 1; i <= log.count; i++) lines.push_back(log.ring[i % kRing]);
   return lines;
+}
+
+std::uint64_t log_newest() {
+  Log& log = the_log();
+  const std::scoped_lock lock(log.mutex);
+  return log.count;
 }
 
 std::uint64_t log_count(LogLevel level) {

@@ -1,4 +1,4 @@
-// The log: lines to stderr, and the last thousand kept in a ring for whoever shows them.
+// The log: lines to stderr, and the last thousand kept in a ring for whoever shows them, with what scripts print.
 #pragma once
 
 #include <cstdint>
@@ -10,7 +10,12 @@
 
 namespace limber {
 
-enum class LogLevel : std::uint8_t { info, warning, error };
+enum class LogLevel : std::uint8_t {
+  info,
+  warning,
+  error,
+  print,  ///< What a script printed: in the ring only, in the order of all that was said.
+};
 
 struct LogLine {
   std::uint64_t number = 0;  ///< Counts from 1 over the run, so that a reader knows what it has seen.
@@ -18,11 +23,15 @@ struct LogLine {
   std::string text;
 };
 
-/// Writes one line to stderr and to the ring. Control characters are shown escaped. [any]
+/// Writes one line to stderr and to the ring, `print` to the ring alone. Control characters are shown escaped; the ring
+/// keeps the beginning and the end of a line of more than 4 KiB. [any]
 void log_line(LogLevel level, std::string_view text);
 
 /// The lines after `seen`, oldest first; at most the last 1000. [any]
 std::vector<LogLine> log_since(std::uint64_t seen);
+
+/// The number of the newest line; 0 before the first. [any]
+std::uint64_t log_newest();
 
 /// How many warnings and errors were said so far: `--strict` and tests ask. [any]
 std::uint64_t log_count(LogLevel level);

@@ -129,6 +129,9 @@ std::size_t edit_distance(std::string_view a, std::string_view b) {
   return row[b.size()];
 }
 
+// comparisons of letters in the search for a near name: a few milliseconds, whoever has made how many names
+constexpr std::size_t kMostWork = 1'000'000;
+
 constexpr std::string_view kForbidden = " #*,/?[]{}%";
 
 int hex_digit(char c) {
@@ -174,8 +177,11 @@ std::string_view nearest_name(std::string_view written, std::span<const std::str
   const std::size_t allowed = std::max<std::size_t>(1, written.size() / 3);
   std::string_view best;
   std::size_t best_distance = allowed + 1;
+  std::size_t work = 0;
   for (const std::string_view name : names) {
     if (name.size() > written.size() + allowed || written.size() > name.size() + allowed) continue;
+    work += written.size() * name.size();
+    if (work > kMostWork) break;
     const std::size_t distance = edit_distance(written, name);
     if (distance < best_distance) {
       best = name;

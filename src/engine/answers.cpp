@@ -26,13 +26,16 @@ Outcome answered(Message answer, std::size_t question) {
 
 Outcome Answers::list(std::string_view kind, std::span<const Arg> args) const {
   Message answer{fmt::format("/list/{}", kind), {}};
-  if (kind == "bodies" || kind == "shapes") {
+  if (kind == "bodies" || kind == "shapes" || kind == "groups") {
     if (!args.empty()) return Outcome::refused("takes no arguments");
     for (const auto& body : world_.bodies()) {
       if (kind == "bodies") answer.args.push_back(Arg::of(body->name()));
     }
     for (const auto& shape : world_.shapes()) {
       if (kind == "shapes") answer.args.push_back(Arg::of(shape->name()));
+    }
+    for (const BehaviorGroup* group : world_.behaviors().groups()) {
+      if (kind == "groups") answer.args.push_back(Arg::of(group->name()));
     }
     return answered(std::move(answer), 0);
   }
@@ -45,6 +48,10 @@ Outcome Answers::list(std::string_view kind, std::span<const Arg> args) const {
   }
   answer.args.push_back(Arg::of(name));
   const Store& store = world_.store();
+  if (kind == "behaviors") {
+    for (const Behavior* behavior : body->behaviors()) answer.args.push_back(Arg::of(behavior->name()));
+    return answered(std::move(answer), 1);
+  }
   const std::string_view group = kind.substr(0, kind.size() - 1);
   for (const NodeId id : store.children(store.child(body->id(), group))) answer.args.push_back(Arg::of(store.name(id)));
   return answered(std::move(answer), 1);

@@ -12,8 +12,8 @@ class Answers {
  public:
   Answers(World& world, HintBudget& hints) : world_(world), hints_(hints) {}
 
-  /// /list/bodies, /list/shapes; /list/parts, /list/joints, /list/motors of a body: names in the streams' order; an
-  /// empty text where there is none.
+  /// /list/bodies, /list/shapes, /list/groups; /list/parts, joints, motors, behaviors of a body: names in the streams'
+  /// order; an empty text where there is none.
   Outcome list(std::string_view kind, std::span<const Arg> args) const;
   /// /get: the row's address and value; a pattern answers for each.
   Outcome get(std::span<const Arg> args) const;

@@ -6,6 +6,7 @@
 #include <string>
 
 #include "base/check.h"
+#include "engine/apply_behaviors.h"
 
 namespace limber {
 
@@ -72,6 +73,7 @@ class Applying {
     remove_bodies(things);
     shapes(things);
     bodies(things);
+    apply_behaviors(a_, bodies_, kept_behaviors_);
     for (const std::size_t gone : a_.difference.gone_shapes) {
       if (Shape* const shape = living<Shape>(a_.world, things.shapes[gone])) a_.world.remove_shape(*shape);
     }
@@ -165,6 +167,7 @@ class Applying {
 
   Body& made_anew(Body& body, const Body& described, const BodyDifference& d) {
     const Keepsakes keepsakes(body);
+    keep_behaviors(body, kept_behaviors_);
     Body& live = a_.world.rebuild_body(body, described, d.joints_start_anew);
     keepsakes.give_to(store_, live.id(), "", d.rows);
     for (std::size_t i = 0; i < d.parts.size(); i++)
@@ -199,6 +202,7 @@ class Applying {
   Store& store_;
   std::vector<Shape*> shapes_;
   std::vector<Body*> bodies_;
+  std::vector<KeptBehavior> kept_behaviors_;  // of bodies that are made anew
 };
 
 }  // namespace

@@ -17,6 +17,7 @@ std::size_t weight_of(const Message& message) {
 std::size_t weight_of(const Command& command) {
   std::size_t bytes = sizeof command;
   for (const Message& message : command.messages) bytes += weight_of(message);
+  if (command.evaluate != nullptr) bytes += sizeof(Evaluate) + command.evaluate->text.capacity();
   return bytes;
 }
 

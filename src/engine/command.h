@@ -4,19 +4,33 @@
 #include <atomic>
 #include <cstddef>
 #include <cstdint>
+#include <functional>
+#include <memory>
 #include <string>
 #include <string_view>
 #include <vector>
 
+#include "base/evaluation.h"
 #include "base/message.h"
 #include "base/osc_plan.h"
 
 namespace limber {
 
-/// Messages that belong together (one datagram, one line of the console): applied as one, in one tick.
+/// A text for the running scene, from a console or the panel. No message means it, so nothing on the network can send
+/// it.
+struct Evaluate {
+  enum class Wish : std::uint8_t { run, complete };
+  Wish wish = Wish::run;
+  std::string text;  ///< Up to kMostEvaluated bytes.
+  /// What came of it, at once between two ticks. It must neither wait nor throw. [sim]
+  std::function<void(Evaluation)> answer = [](const Evaluation&) {};
+};
+
+/// Messages that belong together (one datagram): applied as one, in one tick. Or an evaluation.
 struct Command {
   std::vector<Message> messages;
   Origin origin;
+  std::shared_ptr<const Evaluate> evaluate = nullptr;  ///< Done after the messages.
 };
 
 /// A message on its way out.

@@ -70,6 +70,10 @@ BodyDescription body_of(const Body& body, const Shapes& shapes) {
   for (const auto& motor : body.motors()) {
     out.motors.push_back({joint_number[&motor->joint()], rows_of(store, motor->id())});
   }
+  for (const Behavior* behavior : body.behaviors()) {
+    out.behaviors.push_back({behavior->name(), behavior->type().name, behavior->type().table, behavior->setup(),
+                             behavior->group() != nullptr, rows_of(store, behavior->id())});
+  }
   return out;
 }
 
@@ -111,6 +115,11 @@ Description describe(const World& world) {
   }
   out.bodies.reserve(world.bodies().size());
   for (const auto& body : world.bodies()) out.bodies.push_back(body_of(*body, shapes));
+  for (const BehaviorGroup* group : world.behaviors().groups()) {
+    out.groups.push_back({group->name(), group->type().name, group->type().group_table, group->setup(),
+                          rows_of(world.store(), group->id())});
+  }
+  out.behavior_order = world.behaviors().order();
   return out;
 }
 

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "sim/behavior_list.h"
 #include "sim/world.h"
 
 namespace limber {
@@ -54,6 +55,22 @@ struct MotorDescription {
   std::size_t joint = 0;
   SaidRows rows;
 };
+/// A behaviour of a body; of a group's member only the rows count.
+struct BehaviorDescription {
+  std::string name;
+  std::string type;
+  const Table* table = nullptr;
+  BehaviorSetup setup;
+  bool of_group = false;
+  SaidRows rows;
+};
+struct GroupDescription {
+  std::string name;
+  std::string type;
+  const Table* table = nullptr;
+  GroupSetup setup;
+  SaidRows rows;
+};
 struct BodyDescription {
   std::string name;
   SaidRows rows;
@@ -62,11 +79,14 @@ struct BodyDescription {
   std::vector<PartDescription> parts;
   std::vector<JointDescription> joints;
   std::vector<MotorDescription> motors;
+  std::vector<BehaviorDescription> behaviors;
 };
 struct Description {
   SaidRows world;
   std::vector<std::shared_ptr<const ShapeDescription>> shapes;
   std::vector<BodyDescription> bodies;
+  std::vector<GroupDescription> groups;
+  std::vector<std::string> behavior_order;  ///< BehaviorList::order()
 };
 
 /// What stands in a world, in its order, right after a run and before anything else happened to it.

@@ -149,6 +149,44 @@ BodyDifference compare_bodies(const BodyDescription& before, const BodyDescripti
   return out;
 }
 
+// the same of two tables that may be different ones: rows are then compared by name, defaults too
+std::uint64_t changed_rows(const Table& table_before, const SaidRows& before, const Table& table_now,
+                           const SaidRows& now) {
+  if (&table_before == &table_now) return changed_rows(before, now);
+  const auto value_of = [](const Table&, const SaidRows& rows, const Row& row) {
+    const auto found = std::find_if(rows.begin(), rows.end(), [&](const SaidRow& r) { return r.row == row.index; });
+    return found == rows.end() ? SaidRow{row.index, false, row.initial} : *found;
+  };
+  std::uint64_t rows = 0;
+  for (const Row& row : table_now.rows()) {
+    if (!row.stored() || !row.writable()) continue;
+    const SaidRow is = value_of(table_now, now, row);
+    const Row* const known = table_before.find(row.name);
+    const bool same_type = known != nullptr && known->type == row.type && known->choices == row.choices;
+    const SaidRow was = same_type ? value_of(table_before, before, *known) : SaidRow{row.index, !is.said, {}};
+    if (was.said != is.said || !std::equal(was.values.begin(), was.values.begin() + row.width, is.values.begin()))
+      rows |= std::uint64_t{1} << row.index;
+  }
+  return rows;
+}
+
+template <class T>
+BehaviorDifference compare_behavior(const T* before, const T& now, bool same_setup) {
+  if (before == nullptr) return {false, false, said_rows(now.rows)};
+  return {true, before->type != now.type || !same_setup,
+          changed_rows(*before->table, before->rows, *now.table, now.rows)};
+}
+
+std::vector<BehaviorDifference> compare_behaviors(const BodyDescription* before, const BodyDescription& now) {
+  std::vector<BehaviorDifference> out;
+  for (const BehaviorDescription& is : now.behaviors) {
+    const BehaviorDescription* const was = before == nullptr ? nullptr : named(before->behaviors, is.name);
+    const bool same = was != nullptr && was->of_group == is.of_group && (is.of_group || was->setup == is.setup);
+    out.push_back(compare_behavior(was, is, same));
+  }
+  return out;
+}
+
 template <class T, class Name>
 std::vector<std::optional<std::size_t>> match(const std::vector<T>& before, const std::vector<T>& now, Name name,
                                               std::vector<std::size_t>& gone) {
@@ -180,8 +218,11 @@ bool BodyDifference::empty() const {
 
 bool Difference::empty() const {
   const auto there = [](const std::optional<std::size_t>& before) { return before.has_value(); };
-  return world == 0 && shapes.empty() && bodies.empty() && gone_shapes.empty() && gone_bodies.empty() &&
-         std::all_of(shapes_before.begin(), shapes_before.end(), there) &&
+  const auto same = [](const BehaviorDifference& d) { return d.described && !d.anew && d.rows == 0; };
+  const auto all_same = [&](const auto& list) { return std::all_of(list.begin(), list.end(), same); };
+  return !other_order && gone_behaviors.empty() && gone_groups.empty() && all_same(groups) &&
+         std::all_of(behaviors.begin(), behaviors.end(), all_same) && world == 0 && shapes.empty() && bodies.empty() &&
+         gone_shapes.empty() && gone_bodies.empty() && std::all_of(shapes_before.begin(), shapes_before.end(), there) &&
          std::all_of(bodies_before.begin(), bodies_before.end(), there);
 }
 
@@ -222,6 +263,29 @@ BodyDifference compare_stranger(const BodyDescription& stands, const BodyDescrip
   return out;
 }
 
+namespace {
+
+void compare_behaviors(const Description& before, const Description& now, Difference& out) {
+  for (std::size_t i = 0; i < now.bodies.size(); i++) {
+    const std::optional<std::size_t> was = out.bodies_before[i];
+    out.behaviors.push_back(compare_behaviors(was ? &before.bodies[*was] : nullptr, now.bodies[i]));
+    if (!was) continue;
+    for (const BehaviorDescription& behavior : before.bodies[*was].behaviors) {
+      if (named(now.bodies[i].behaviors, behavior.name) == nullptr) out.gone_behaviors.emplace_back(i, behavior.name);
+    }
+  }
+  for (const GroupDescription& is : now.groups) {
+    const GroupDescription* const was = named(before.groups, is.name);
+    out.groups.push_back(compare_behavior(was, is, was != nullptr && was->setup == is.setup));
+  }
+  for (const GroupDescription& was : before.groups) {
+    if (named(now.groups, was.name) == nullptr) out.gone_groups.push_back(was.name);
+  }
+  out.other_order = before.behavior_order != now.behavior_order;
+}
+
+}  // namespace
+
 Difference compare(const Description& before, const Description& now) {
   Difference out;
   out.world = changed_rows(before.world, now.world);
@@ -243,6 +307,7 @@ Difference compare(const Description& before, const Description& now) {
     difference.before = out.bodies_before[i];
     if (!difference.empty()) out.bodies.push_back(std::move(difference));
   }
+  compare_behaviors(before, now, out);
   return out;
 }
 

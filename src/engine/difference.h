@@ -4,6 +4,8 @@
 
 #include <cstdint>
 #include <optional>
+#include <string>
+#include <utility>
 #include <vector>
 
 #include "engine/description.h"
@@ -35,6 +37,13 @@ struct ShapeDifference {
   std::uint64_t rows = 0;
 };
 
+/// What a behaviour, or a group, is to become.
+struct BehaviorDifference {
+  bool described = false;  ///< The description before had it.
+  bool anew = false;       ///< Another type, or it acts on others.
+  std::uint64_t rows = 0;  ///< To be set, by the table that it has now.
+};
+
 struct Difference {
   std::uint64_t world = 0;                                ///< Rows of the world to be set.
   std::vector<std::optional<std::size_t>> shapes_before;  ///< For each shape now, which one it was.
@@ -43,6 +52,12 @@ struct Difference {
   std::vector<BodyDifference> bodies;   ///< The same, of bodies.
   std::vector<std::size_t> gone_shapes;
   std::vector<std::size_t> gone_bodies;
+  std::vector<std::vector<BehaviorDifference>> behaviors;  ///< Of each body now, each of its behaviours.
+  std::vector<BehaviorDifference> groups;                  ///< Each group now.
+  /// Behaviours that are no longer described, by body (a number of the description now) and name.
+  std::vector<std::pair<std::size_t, std::string>> gone_behaviors;
+  std::vector<std::string> gone_groups;
+  bool other_order = false;  ///< Behaviours act in another order.
 
   bool empty() const;
 };

@@ -23,11 +23,15 @@ std::array<const Table*, 4> named_classes() {
 constexpr Irregular kIrregulars[] = {
     {"/physics/part/force", "[body] [part] x y z [rx ry rz]",
      "Force in N for one tick, world axes; rx ry rz: where, from the centre of mass."},
+    {"/physics/behavior/parameter", "[body] behavior parameter value",
+     "Sets a parameter, or active, of the behaviour of that name, in every body or one."},
     {"/get", "path", "Answers with the row's address and value; a pattern with each."},
     {"/list/bodies", "", "Answers with all bodies' names, in the order of the streams."},
     {"/list/parts", "body", "Answers with the body and its parts' names."},
     {"/list/joints", "body", "Answers with the body and its joints' names, in the order of the streams."},
     {"/list/motors", "body", "Answers with the body and its motors' names."},
+    {"/list/behaviors", "body", "Answers with the body and its behaviours' names, in the order in which they act."},
+    {"/list/groups", "", "Answers with the names of the group behaviours."},
     {"/list/shapes", "", "Answers with the names of the scene's shapes."},
 };
 
@@ -52,7 +56,8 @@ std::string thing_text(const Store& store, NodeId id) {
   const NodeId owner = store.parent(store.parent(id));  // a part stands in its body's group of parts
   if (!owner.null() && &store.table(owner) == &Body::table())
     return fmt::format("{} '{}/{}'", word, store.name(owner), store.name(id));
-  return &store.table(id) == &Body::table() ? fmt::format("{} '{}'", word, store.name(id)) : store.path(id);
+  return &store.table(id) == &Body::table() || word == "group" ? fmt::format("{} '{}'", word, store.name(id))
+                                                               : store.path(id);
 }
 
 // how a button tells that it was let go; nothing is to be done then
@@ -75,7 +80,9 @@ Dispatch::Dispatch(World& world) : world_(world), store_(world.store()) {
   }
   for (const Irregular& irregular : kIrregulars) {
     const bool lists = irregular.address.starts_with("/list/");
+    const bool behavior = irregular.address.starts_with("/physics/behavior/");
     by_name_[std::string(irregular.address)].irregular = lists                         ? &Dispatch::list
+                                                         : behavior                    ? &Dispatch::behavior_parameter
                                                          : irregular.address == "/get" ? &Dispatch::get
                                                                                        : &Dispatch::part_force;
   }
@@ -130,7 +137,8 @@ Outcome Dispatch::by_path(const Message& message) {
   if (known == paths_.end()) {
     const Result<Place> place = find_place(store_, address);
     if (!place) {
-      const bool ours = address.starts_with("/physics/body/") || !address.starts_with("/");
+      const bool ours =
+          address.starts_with("/physics/body/") || address.starts_with("/physics/group/") || !address.starts_with("/");
       return Outcome::unknown(ours ? place.error()
                                    : fmt::format("there is no address {}{}", printable(address),
                                                  answers_.near_address(address, addresses_)));
@@ -251,6 +259,24 @@ Outcome Dispatch::part_force(const Message& message) {
     part.apply_force_at({v[0], v[1], v[2]}, part.center() + Vec3(v[3], v[4], v[5]));
   }
   return {};
+}
+
+Outcome Dispatch::behavior_parameter(const Message& message) {
+  // names end with the last text; where no value follows, that text is the value: a label, "true", a number
+  const std::span<const Arg> args = message.args;
+  std::size_t names = args.size();
+  while (names > 0 && !args[names - 1].is_text()) names--;
+  if (names == args.size() && names > 0) names--;
+  if (names < 2 || names > 3)
+    return Outcome::refused("takes a body or none, a behavior, the name of its parameter, and the parameter's value");
+  for (const Arg& arg : args.first(names)) {
+    if (arg.kind == Arg::Kind::nil) return Outcome::refused("nothing stands where a name is expected");
+  }
+  places_.clear();
+  const std::span<const Arg> things = args.first(names - 1);
+  if (const Result<void> selected = selector_.select_behaviors(things, args[names - 1], places_); !selected)
+    return Outcome::refused(selected.error());
+  return apply(Selector::single(things), args.subspan(names));
 }
 
 Outcome Dispatch::list(const Message& message) {

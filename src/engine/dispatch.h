@@ -65,6 +65,7 @@ class Dispatch {
   /// Does the action of each of `places_`.
   Outcome act(std::span<const Arg> value);
   Outcome part_force(const Message& message);
+  Outcome behavior_parameter(const Message& message);
   Outcome list(const Message& message);
   Outcome get(const Message& message);
   Outcome gone(const Message& message);

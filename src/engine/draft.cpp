@@ -34,7 +34,9 @@ void Draft::find_spots() {
     put_all(body.parts(), Kind::part, i);
     put_all(body.joints(), Kind::joint, i);
     put_all(body.motors(), Kind::motor, i);
+    put_all(body.behaviors(), Kind::behavior, i);
   }
+  put_all(world_.behaviors().groups(), Kind::group, 0);
 }
 
 NodeId Draft::live_id(NodeId id, const World& live, const std::vector<NodeId>& shapes,
@@ -44,9 +46,17 @@ NodeId Draft::live_id(NodeId id, const World& live, const std::vector<NodeId>& s
   if (spot.kind == Kind::none) return {};
   if (spot.kind == Kind::world) return live.id();
   if (spot.kind == Kind::shape) return shapes[spot.owner];
+  if (spot.kind == Kind::group) {
+    const BehaviorGroup* const group = live.behaviors().find_group(description_->groups[spot.number].name);
+    return group == nullptr ? NodeId{} : group->id();
+  }
   const NodeId of = bodies[spot.owner];
   if (spot.kind == Kind::body) return of;
   const Body& body = *static_cast<const Body*>(live.store().thing(of));
+  if (spot.kind == Kind::behavior) {
+    const Behavior* const behavior = body.find_behavior(description_->bodies[spot.owner].behaviors[spot.number].name);
+    return behavior == nullptr ? NodeId{} : behavior->id();
+  }
   if (spot.kind == Kind::part) return body.parts()[spot.number]->id();
   if (spot.kind == Kind::joint) return body.joints()[spot.number]->id();
   return body.motors()[spot.number]->id();

@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include "base/clock_seconds.h"
 #include "base/log.h"
 #include "base/text.h"
 
@@ -16,20 +17,16 @@ namespace {
 // while the next tick is further away than this, commands take effect without waiting for it
 constexpr auto kLongestWait = std::chrono::milliseconds(50);
 
-double seconds_now() {
-  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
-}
-
 // the time since the last lap
 class Stopwatch {
  public:
   double lap() {
-    const double now = seconds_now();
+    const double now = clock_seconds();
     return now - std::exchange(last_, now);
   }
 
  private:
-  double last_ = seconds_now();
+  double last_ = clock_seconds();
 };
 
 }  // namespace
@@ -102,6 +99,7 @@ void Engine::reset() {
   }
   faults_ += before.health_events();
   stage_ = std::move(fresh);
+  if (stage_->scene != nullptr) stage_->scene->arm();  // while both were there, the new one ran interpreted
   replay_hand();
   begin_show();
   send_transport();
@@ -204,6 +202,7 @@ void Engine::pass(bool may_step) {
   if (running) {
     stage.world.step();
     const TickTimes& physics = stage.world.times();
+    times_.behaviors = physics.behaviors;
     times_.effects = physics.effects;
     times_.physics = physics.physics;
     times_.readouts = physics.readouts;
@@ -232,7 +231,23 @@ void Engine::drain() {
   link_.inbox.drain(commands_);
   for (Command& command : commands_) {
     for (Message& message : command.messages) execute(message, command.origin);
+    if (command.evaluate != nullptr) evaluate(*command.evaluate);
   }
+}
+
+// what a person mistypes is answered to them and is no fault of the show
+void Engine::evaluate(const Evaluate& wish) {
+  Evaluation said{Evaluation::Kind::error, "there is no scene to evaluate in"};
+  const std::uint64_t before = log_newest();
+  if (wish.text.size() > kMostEvaluated) {
+    said.text = fmt::format("a text for the scene has up to {} bytes, this one {}", kMostEvaluated, wish.text.size());
+  } else if (stage_->scene != nullptr) {
+    Scene& scene = *stage_->scene;
+    said = wish.wish == Evaluate::Wish::run ? scene.evaluate(wish.text) : scene.complete(wish.text);
+  }
+  said.log_before = before;
+  said.log_after = log_newest();
+  wish.answer(std::move(said));
 }
 
 void Engine::execute(Message& message, const Origin& origin) {

@@ -35,12 +35,13 @@ struct EngineOptions {
 struct PhaseTimes {
   double commands = 0;
   double scripts = 0;
+  double behaviors = 0;
   double effects = 0;
   double physics = 0;
   double readouts = 0;
   double snapshot = 0;
   double collector = 0;
-  double total() const { return commands + scripts + effects + physics + readouts + snapshot; }
+  double total() const { return commands + scripts + behaviors + effects + physics + readouts + snapshot; }
 };
 
 class Engine : private ScriptHost {
@@ -97,6 +98,7 @@ class Engine : private ScriptHost {
   bool between_ticks(const std::function<void()>& work);
   void drain();
   void execute(Message& message, const Origin& origin);
+  void evaluate(const Evaluate& wish);
   void refuse(std::string_view address, const Origin& origin, std::string_view error);
   void call_handlers();
   void publish();

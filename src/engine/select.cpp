@@ -1,6 +1,8 @@
 // Names in messages to things.
 #include "engine/select.h"
 
+#include <algorithm>
+
 #include <fmt/format.h>
 
 #include "base/text.h"
@@ -65,33 +67,84 @@ Result<void> Selector::select(const Table& table, const Row& row, std::span<cons
     for (const auto& body : world_.bodies()) add(*body, table, row, first, out);
   }
   if (!out.empty() || names.empty()) return {};
-  if (names.size() == 2) return nothing_in(table, first, second);
+  if (names.size() == 2) return nothing_in(table.name(), first, second);
   if (body_found) return Error{fmt::format("body '{}' has no {}s", printable(first), table.name())};
-  return nothing_called(table, first);
+  return nothing_called(table.name(), first);
 }
 
-Error Selector::nothing_called(const Table& table, std::string_view name) const {
-  if (is_pattern(name)) return Error{fmt::format("no body and no {} matches '{}'", table.name(), printable(name))};
+Result<void> Selector::select_behaviors(std::span<const Arg> names, const Arg& parameter,
+                                        std::vector<Place>& out) const {
+  std::string buffers[3];
+  const std::string_view body_name = names.size() == 2 ? view_of(names[0], buffers[0]) : "*";
+  const std::string_view name = view_of(names.back(), buffers[1]);
+  const std::string_view wanted = view_of(parameter, buffers[2]);
+  const Behavior* without = nullptr;
+  const auto take = [&](const Behavior& behavior) {
+    const Row* const row = behavior.type().table->find(wanted);
+    if (row != nullptr && row->writable()) {
+      out.push_back({behavior.id(), row});
+    } else {
+      without = &behavior;
+    }
+  };
+  const auto look_in = [&](const Body& body) {
+    if (!is_pattern(name)) {
+      if (const Behavior* behavior = body.find_behavior(name)) take(*behavior);
+      return;
+    }
+    for (const Behavior* behavior : body.behaviors()) {
+      if (pattern_match(name, behavior->name())) take(*behavior);
+    }
+  };
+  if (!is_pattern(body_name)) {
+    if (const Body* body = world_.find_body(body_name)) look_in(*body);
+  } else {
+    for (const auto& body : world_.bodies()) {
+      if (names.size() < 2 || pattern_match(body_name, body->name())) look_in(*body);
+    }
+  }
+  if (!out.empty()) return {};
+  if (without != nullptr) return no_parameter(*without, wanted);
+  if (names.size() == 2) return nothing_in("behavior", body_name, name);
+  std::vector<std::string_view> near;
+  for (const auto& body : world_.bodies()) {
+    for (const Behavior* behavior : body->behaviors()) {
+      if (std::find(near.begin(), near.end(), behavior->name()) == near.end()) near.push_back(behavior->name());
+    }
+  }
+  return Error{fmt::format("there is no behavior '{}'{}", printable(name), hint(name, near))};
+}
+
+Error Selector::no_parameter(const Behavior& behavior, std::string_view parameter) const {
+  std::vector<std::string_view> near;
+  for (const Row& row : behavior.type().table->rows()) {
+    if (row.writable()) near.push_back(row.name);
+  }
+  return Error{fmt::format("behavior '{}/{}' ({}) has no parameter '{}'{}", behavior.body().name(), behavior.name(),
+                           behavior.type().name, printable(parameter), hint(parameter, near))};
+}
+
+Error Selector::nothing_called(std::string_view kind, std::string_view name) const {
+  if (is_pattern(name)) return Error{fmt::format("no body and no {} matches '{}'", kind, printable(name))};
   std::vector<std::string_view> near = world_.body_names();
-  if (!world_.bodies().empty()) add_names(*world_.bodies().front(), table, near);
-  return Error{fmt::format("there is no body or {} '{}'{}", table.name(), printable(name), hint(name, near))};
+  if (!world_.bodies().empty()) add_names(*world_.bodies().front(), kind, near);
+  return Error{fmt::format("there is no body or {} '{}'{}", kind, printable(name), hint(name, near))};
 }
 
-Error Selector::nothing_in(const Table& table, std::string_view body, std::string_view element) const {
+Error Selector::nothing_in(std::string_view kind, std::string_view body, std::string_view element) const {
   const Body* found = world_.find_body(body);
   if (found == nullptr && !is_pattern(body))
     return Error{fmt::format("there is no body '{}'{}", printable(body), hint(body, world_.body_names()))};
   if (found == nullptr || is_pattern(element))
-    return Error{fmt::format("no {} matches '{}' in '{}'", table.name(), printable(element), printable(body))};
+    return Error{fmt::format("no {} matches '{}' in '{}'", kind, printable(element), printable(body))};
   std::vector<std::string_view> near;
-  add_names(*found, table, near);
-  return Error{
-      fmt::format("no {} '{}' in '{}'{}", table.name(), printable(element), printable(body), hint(element, near))};
+  add_names(*found, kind, near);
+  return Error{fmt::format("no {} '{}' in '{}'{}", kind, printable(element), printable(body), hint(element, near))};
 }
 
-void Selector::add_names(const Body& body, const Table& table, std::vector<std::string_view>& out) const {
+void Selector::add_names(const Body& body, std::string_view kind, std::vector<std::string_view>& out) const {
   const Store& store = world_.store();
-  for (const NodeId id : store.children(store.child(body.id(), table.name()))) out.push_back(store.name(id));
+  for (const NodeId id : store.children(store.child(body.id(), kind))) out.push_back(store.name(id));
 }
 
 std::string Selector::hint(std::string_view written, const std::vector<std::string_view>& names) const {

@@ -28,6 +28,10 @@ class Selector {
   /// one: a body's, else an element's in every body; two: body and element. Patterns may stand for names.
   Result<void> select(const Table& table, const Row& row, std::span<const Arg> names, std::vector<Place>& out) const;
 
+  /// A parameter's row of behaviours: of one name in every body, or `names`: body and behaviour. Those that have no
+  /// such parameter are left out, unless none has it.
+  Result<void> select_behaviors(std::span<const Arg> names, const Arg& parameter, std::vector<Place>& out) const;
+
   /// A name as it was sent: text, or the number that a body is called.
   static std::string text(const Arg& name);
   /// Whether the names mean one thing only, without a pattern.
@@ -36,9 +40,10 @@ class Selector {
  private:
   void add(const Body& body, const Table& table, const Row& row, std::string_view element,
            std::vector<Place>& out) const;
-  Error nothing_called(const Table& table, std::string_view name) const;
-  Error nothing_in(const Table& table, std::string_view body, std::string_view element) const;
-  void add_names(const Body& body, const Table& table, std::vector<std::string_view>& out) const;
+  Error nothing_called(std::string_view kind, std::string_view name) const;
+  Error nothing_in(std::string_view kind, std::string_view body, std::string_view element) const;
+  Error no_parameter(const Behavior& behavior, std::string_view parameter) const;
+  void add_names(const Body& body, std::string_view kind, std::vector<std::string_view>& out) const;
   std::string hint(std::string_view written, const std::vector<std::string_view>& names) const;
 
   World& world_;

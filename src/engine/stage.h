@@ -22,6 +22,12 @@ struct Stage {
 
   /// Runs the scene's file; without one the world stays empty.
   Result<void> run(const std::string& file, ScriptHost& host, const SceneOptions& options) {
+    world.behaviors().on_fault([&host](const Behavior& behavior) {
+      const BehaviorFault& fault = behavior.fault();
+      const std::string path = behavior.store().path(behavior.id());
+      if (fault.file.empty()) return host.script_error(path, fault.line, path + ": " + fault.text);
+      host.script_error(fault.file, fault.line, fault.text + "\nof " + path);
+    });
     if (file.empty()) return {};
     scene = std::make_unique<Scene>(world, host, options);
     return scene->run(file);

@@ -8,14 +8,18 @@
 
 namespace limber {
 
-std::string model_key(const std::string& path, const ImportOptions& options) {
-  std::error_code fault;
-  const std::filesystem::path whole = std::filesystem::weakly_canonical(path, fault);
-  std::string key = fault ? path : whole.string();
-  key += fmt::format("|{}|{}", options.fixed_base ? (*options.fixed_base ? "fixed" : "free") : "", options.keep_fixed);
+std::string options_key(const ImportOptions& options) {
+  std::string key =
+      fmt::format("|{}|{}", options.fixed_base ? (*options.fixed_base ? "fixed" : "free") : "", options.keep_fixed);
   for (const auto& [name, value] : options.pose) key += fmt::format("|{}:{}={:a}", name.size(), name, value);
   for (const std::string& folder : options.package_paths) key += fmt::format("|{}:{}", folder.size(), folder);
   return key;
+}
+
+std::string model_key(const std::string& path, const ImportOptions& options) {
+  std::error_code fault;
+  const std::filesystem::path whole = std::filesystem::weakly_canonical(path, fault);
+  return (fault ? path : whole.string()) + options_key(options);
 }
 
 bool ModelLibrary::is_fresh(Entry& entry) {

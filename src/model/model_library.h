@@ -15,6 +15,8 @@
 
 namespace limber {
 
+/// Everything by which two imports of a file differ, in one text. [any]
+std::string options_key(const ImportOptions& options);
 /// Everything that makes two imports the same, as one text. [any]
 std::string model_key(const std::string& path, const ImportOptions& options);
 

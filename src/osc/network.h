@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "base/result.h"
+#include "base/wake.h"
 #include "engine/link.h"
 #include "osc/clock.h"
 #include "osc/names.h"
@@ -16,7 +17,6 @@
 #include "osc/receiver.h"
 #include "osc/sender.h"
 #include "osc/streams.h"
-#include "osc/wake.h"
 
 namespace limber {
 

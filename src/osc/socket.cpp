@@ -5,7 +5,6 @@
 #include <netdb.h>
 #include <netinet/in.h>
 #include <sys/socket.h>
-#include <unistd.h>
 
 #include <cerrno>
 #include <memory>
@@ -55,14 +54,10 @@ Result<Endpoint> resolve(const std::string& host, std::uint16_t port) {
   return Endpoint{ntohl(address->sin_addr.s_addr), port};
 }
 
-Socket::~Socket() {
-  if (fd_ >= 0) close(fd_);
-}
-
 Endpoint Socket::local() const {
   sockaddr_in address{};
   socklen_t length = sizeof address;
-  if (getsockname(fd_, reinterpret_cast<sockaddr*>(&address), &length) != 0) return {};
+  if (getsockname(fd(), reinterpret_cast<sockaddr*>(&address), &length) != 0) return {};
   return endpoint_of(address);
 }
 

@@ -5,8 +5,8 @@
 #include <optional>
 #include <string>
 #include <string_view>
-#include <utility>
 
+#include "base/descriptor.h"
 #include "base/result.h"
 
 struct sockaddr_in;
@@ -32,27 +32,12 @@ std::optional<std::uint32_t> parse_ipv4(const std::string& text);
 /// Looks up a host: numbers at once, names by the system's resolver, which may take seconds. `port` is carried over.
 Result<Endpoint> resolve(const std::string& host, std::uint16_t port);
 
-/// A file descriptor that closes itself.
-class Socket {
+/// A socket that closes itself.
+class Socket : public Descriptor {
  public:
-  Socket() = default;
-  explicit Socket(int fd) : fd_(fd) {}
-  Socket(Socket&& other) noexcept : fd_(std::exchange(other.fd_, -1)) {}
-  Socket& operator=(Socket&& other) noexcept {
-    std::swap(fd_, other.fd_);
-    return *this;
-  }
-  Socket(const Socket&) = delete;
-  Socket& operator=(const Socket&) = delete;
-  ~Socket();
-
-  int fd() const { return fd_; }
-  bool open() const { return fd_ >= 0; }
+  using Descriptor::Descriptor;
   /// The local end: the port that the kernel chose, where it was asked to.
   Endpoint local() const;
-
- private:
-  int fd_ = -1;
 };
 
 /// A non-blocking UDP socket bound to `at` (port 0: the kernel chooses). The error says why not, nothing more.

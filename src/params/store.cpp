@@ -124,30 +124,93 @@ const Store::Node& Store::nobody() {
   return none;
 }
 
-void Store::release(NodeId id) {
-  for (const NodeId child : nodes_[id.slot].children) release(child);
+NodeId Store::retable(NodeId id, const Table& table, void* thing) {
+  if (!alive(id)) return {};
   Node& node = nodes_[id.slot];
+  LIMBER_CHECK(node.children.empty());
+  node.thing = thing;
+  if (node.table == &table) return id;
+  // what both tables have is carried over
+  std::vector<double> carried;
+  const Table& before = *node.table;
+  for (const Row& row : table.rows()) {
+    const std::size_t at = carried.size();
+    carried.insert(carried.end(), row.initial.begin(), row.initial.begin() + row.width);
+    const Row* const old = before.find(row.name);
+    if (!row.stored() || old == nullptr || !old->stored() || old->type != row.type) continue;
+    const double* const values = slot_values(id, *old);
+    for (std::uint32_t i = 0; i < row.width; i++) carried[at + i] = std::clamp(values[i], row.low(i), row.high(i));
+    if (row.type != RowType::choice) continue;
+    // a choice is its label, wherever that now stands
+    const auto label =
+        std::find(row.choices.begin(), row.choices.end(), old->choices[static_cast<std::size_t>(values[0])]);
+    carried[at] = label == row.choices.end() ? row.initial[0] : static_cast<double>(label - row.choices.begin());
+  }
+  give_back_blocks(id.slot);
   NodeSlot& slot = slots_[id.slot];
-  child_of_.erase(child_of_.find(id.slot));
-  const auto give_back = [](std::vector<std::vector<std::uint32_t>>& spare, std::uint32_t base, std::uint32_t width) {
+  slot.generation += 2;
+  slot.table = table_number(table);
+  slot.kept = take_block(kept_, spare_kept_, table.kept_width());
+  slot.live = take_block(live_, spare_live_, table.live_width());
+  node.table = &table;
+  node.marks = 0;
+  const NodeId renewed{id.slot, slot.generation};
+  std::vector<NodeId>& siblings = nodes_[node.parent.slot].children;
+  std::replace(siblings.begin(), siblings.end(), id, renewed);
+  std::size_t at = 0;
+  for (const Row& row : table.rows()) {
+    if (row.stored()) std::copy_n(carried.data() + at, row.width, slot_values(renewed, row));
+    at += row.width;
+  }
+  mark_all(renewed);
+  kept_version_++;
+  structure_version_++;
+  refresh_view();
+  return renewed;
+}
+
+// the numbers of a node, whose room is used again
+void Store::give_back_blocks(std::uint32_t at) {
+  const NodeSlot& slot = slots_[at];
+  const Table& table = *nodes_[at].table;
+  const auto spare = [](std::vector<std::vector<std::uint32_t>>& list, std::uint32_t base, std::uint32_t width) {
     if (width == 0) return;
-    if (spare.size() <= width) spare.resize(width + 1);
-    spare[width].push_back(base);
+    if (list.size() <= width) list.resize(width + 1);
+    list[width].push_back(base);
   };
   // a freed block is zero, so that snapshots and hashes do not tell of the dead
-  std::fill_n(kept_.begin() + slot.kept, node.table->kept_width(), 0.0);
-  std::fill_n(live_.begin() + slot.live, node.table->live_width(), 0.0);
-  give_back(spare_kept_, slot.kept, node.table->kept_width());
-  give_back(spare_live_, slot.live, node.table->live_width());
-  slot.generation++;  // odd to even: gone
-  free_slots_.push_back(id.slot);
-  node = {};
+  std::fill_n(kept_.begin() + slot.kept, table.kept_width(), 0.0);
+  std::fill_n(live_.begin() + slot.live, table.live_width(), 0.0);
+  spare(spare_kept_, slot.kept, table.kept_width());
+  spare(spare_live_, slot.live, table.live_width());
+}
+
+void Store::release(NodeId id) {
+  for (const NodeId child : nodes_[id.slot].children) release(child);
+  child_of_.erase(child_of_.find(id.slot));
+  slots_[id.slot].generation++;  // odd to even: gone
+  give_back(id.slot);
+}
+
+// what a slot holds, of a node that is gone
+void Store::give_back(std::uint32_t at) {
+  give_back_blocks(at);
+  free_slots_.push_back(at);
+  nodes_[at] = {};
+}
+
+// its place among its siblings, which it leaves; what goes is mostly what came last
+std::size_t Store::leave_siblings(NodeId id) {
+  std::vector<NodeId>& siblings = nodes_[nodes_[id.slot].parent.slot].children;
+  const auto at = std::find(siblings.rbegin(), siblings.rend(), id).base() - 1;
+  const auto place = static_cast<std::size_t>(at - siblings.begin());
+  siblings.erase(at);
+  return place;
 }
 
 void Store::remove(NodeId id) {
   if (!alive(id) || id == root_) return;
-  std::vector<NodeId>& siblings = nodes_[nodes_[id.slot].parent.slot].children;
-  siblings.erase(std::find(siblings.begin(), siblings.end(), id));
+  leave_siblings(id);
   release(id);
   kept_version_++;
   structure_version_++;
@@ -215,9 +278,11 @@ Result<SetOutcome> Store::set(NodeId id, const Row& row, std::span<const double>
     row.write(the_thing, taken.data());
     return outcome;
   }
+  keep(id, row);
   std::copy_n(taken.data(), row.width, slot_values(id, row));
   if (!row.live) kept_version_++;
   mark(id, row);
+  if (row.written != nullptr) row.written(the_thing, row);
   return outcome;
 }
 
@@ -243,18 +308,23 @@ void Store::apply_marks() {
   for (int round = 0; round < 4 && !marked_.empty(); round++) {
     applying_.clear();
     applying_.swap(marked_);
-    for (const NodeId id : applying_) {
-      if (!alive(id)) continue;
-      const Table& table = *nodes_[id.slot].table;
-      std::array<void (*)(void*), 64> done;
-      auto end = done.begin();
-      for (std::uint64_t marks = std::exchange(nodes_[id.slot].marks, 0); marks != 0; marks &= marks - 1) {
-        const Row& row = table.row(static_cast<std::uint32_t>(std::countr_zero(marks)));
-        if (std::find(done.begin(), end, row.effect) != end) continue;
-        *end++ = row.effect;
-        row.effect(nodes_[id.slot].thing);
-      }
-    }
+    for (const NodeId id : applying_) run_effects(id);
+  }
+}
+
+// the node stays in the list, where it finds nothing left to do: looking for it would cost more
+void Store::apply_marks(NodeId id) { run_effects(id); }
+
+void Store::run_effects(NodeId id) {
+  if (!alive(id)) return;
+  const Table& table = *nodes_[id.slot].table;
+  std::array<void (*)(void*), 64> done;
+  auto end = done.begin();
+  for (std::uint64_t marks = std::exchange(nodes_[id.slot].marks, 0); marks != 0; marks &= marks - 1) {
+    const Row& row = table.row(static_cast<std::uint32_t>(std::countr_zero(marks)));
+    if (std::find(done.begin(), end, row.effect) != end) continue;
+    *end++ = row.effect;
+    row.effect(nodes_[id.slot].thing);
   }
 }
 

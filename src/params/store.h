@@ -11,6 +11,7 @@
 
 #include "base/id.h"
 #include "base/result.h"
+#include "params/store_undo.h"
 #include "params/table.h"
 
 namespace limber {
@@ -50,6 +51,10 @@ class Store {
   NodeId add(const Table& table, NodeId parent, std::string name, void* thing);
   /// A node without rows, such as /physics/body.
   NodeId add_group(NodeId parent, std::string name);
+  /// Gives a node without children another table and thing, in its place and under its name. Rows of the same name and
+  /// type keep their values, brought into their ranges; the others have their defaults. The id stays when the table
+  /// does; else the old one is stale.
+  NodeId retable(NodeId id, const Table& table, void* thing);
   /// Removes the node and all below it.
   void remove(NodeId id);
 
@@ -115,6 +120,27 @@ class Store {
   void mark_all(NodeId id);
   /// Runs the effects of all marked rows, each function once a node, in the order in which nodes were marked.
   void apply_marks();
+  /// The same for one node, ahead of the others.
+  void apply_marks(NodeId id);
+  /// Whether the row waits for its effect.
+  bool marked(NodeId id, const Row& row) const { return (node(id).marks >> row.index & 1u) != 0; }
+
+  /// From here on the log keeps what each value was, until end_undo() or take_back(). Allocates only while it grows.
+  void begin_undo();
+  /// The call ended well: what it wrote stays.
+  void end_undo();
+  /// The call failed: every value, and whether its effect waits, is as it was when begin_undo() was called.
+  void take_back();
+  /// Before something writes past the door: lets the log know the value. Costs nothing outside of a guarded call.
+  void keep(NodeId id, const Row& row) {
+    if (undo_.active) keep_value(id, row);
+  }
+  /// Takes the node and all below it out of sight, as if removed; the answer is its place among its siblings.
+  std::size_t hide(NodeId id);
+  /// Brings a hidden node back to its place, with the id that it had.
+  void show(NodeId id, std::size_t place);
+  /// Removes a hidden node for good.
+  void drop_hidden(NodeId id);
 
   std::span<const double> kept() const { return kept_; }
   std::span<const double> live() const { return live_; }
@@ -181,7 +207,13 @@ class Store {
   }
   std::uint32_t take_block(std::vector<double>& block, std::vector<std::vector<std::uint32_t>>& spare,
                            std::uint32_t width);
+  std::size_t leave_siblings(NodeId id);
   void release(NodeId id);
+  void give_back_blocks(std::uint32_t slot);
+  void give_back(std::uint32_t slot);
+  void keep_value(NodeId id, const Row& row);
+  void turn_hidden(NodeId id, bool hide);
+  void run_effects(NodeId id);
   void refresh_view();
 
   std::vector<NodeSlot> slots_;
@@ -195,6 +227,7 @@ class Store {
   std::vector<const Table*> tables_;
   std::vector<NodeId> marked_;
   std::vector<NodeId> applying_;
+  StoreUndo undo_;
   NodeId root_;
   std::uint64_t kept_version_ = 0;
   std::uint64_t structure_version_ = 0;

@@ -61,7 +61,8 @@ struct Row {
   void (*write)(void* thing, const double* in) = nullptr;                 ///< A view's way to the rows behind it.
   Result<void> (*refuse)(const void* thing, const double* in) = nullptr;  ///< Why this thing can't take this value.
   Result<void> (*act)(void* thing, std::span<const double> args) = nullptr;
-  std::uint32_t min_args = 0;  ///< Numbers that an action takes.
+  void (*written)(void* thing, const Row& row) = nullptr;  ///< Told at once of each write, even of the same value.
+  std::uint32_t min_args = 0;                              ///< Numbers that an action takes.
   std::uint32_t max_args = 0;
 
   std::uint32_t index = 0;   ///< Position in the table.
@@ -77,6 +78,11 @@ struct Row {
 
 /// "0 .. 10", or with ranges of their own "0 1 2 .. 5 5 5".
 std::string range_text(const Row& row);
+
+class Table;
+/// A table for rows that are known only while the program runs (a scene's parameters, a behaviour's). It lives as long
+/// as the program, since stores keep tables by address; an equal one is used again. [any]
+const Table& shared_table(std::string name, std::string path, std::vector<Row> rows);
 
 /// The rows of one class.
 class Table {

@@ -12,6 +12,7 @@ constexpr std::array kUnits = {
     Unit{"kg", "kilogram"},
     Unit{"s", "second"},
     Unit{"ms", "millisecond of simulated time"},
+    Unit{"µs", "microsecond of the processor"},
     Unit{"rad", "radian"},
     Unit{"deg", "degree"},
     Unit{"Hz", "per second"},

@@ -4,6 +4,8 @@
 #include <cstddef>
 
 #include "params/store.h"
+#include "script/match.h"
+#include "sim/neighbors.h"
 
 namespace limber {
 
@@ -12,11 +14,20 @@ static_assert(offsetof(LimberSlot, generation) == offsetof(NodeSlot, generation)
 static_assert(offsetof(LimberSlot, table) == offsetof(NodeSlot, table));
 static_assert(offsetof(LimberSlot, kept) == offsetof(NodeSlot, kept));
 static_assert(offsetof(LimberSlot, live) == offsetof(NodeSlot, live));
+static_assert(sizeof(LimberMatch) == sizeof(Match));
+static_assert(offsetof(LimberMatch, count) == offsetof(Match, count));
+static_assert(offsetof(LimberMatch, from) == offsetof(Match, from));
+static_assert(offsetof(LimberMatch, length) == offsetof(Match, length));
 static_assert(sizeof(LimberView) == sizeof(StoreView));
 static_assert(offsetof(LimberView, slots) == offsetof(StoreView, slots));
 static_assert(offsetof(LimberView, kept) == offsetof(StoreView, kept));
 static_assert(offsetof(LimberView, live) == offsetof(StoreView, live));
 static_assert(offsetof(LimberView, slot_count) == offsetof(StoreView, slot_count));
+
+static_assert(sizeof(LimberNeighbor) == sizeof(Neighbor));
+static_assert(offsetof(LimberNeighbor, index) == offsetof(Neighbor, index));
+static_assert(offsetof(LimberNeighbor, x) == offsetof(Neighbor, offset));
+static_assert(offsetof(LimberNeighbor, distance) == offsetof(Neighbor, distance));
 
 const LimberApi& limber_api() {
   static const LimberApi api = {

@@ -14,6 +14,8 @@ namespace limber::calls {
 
 namespace {
 
+constexpr std::size_t kMostPoints = 1000;  // of a hull that a callback asks for: about 10 ms
+
 Pose pose_at(const double* v) { return {{v[0], v[1], v[2]}, glm::normalize(quat_xyzw(v[3], v[4], v[5], v[6]))}; }
 
 template <class T>
@@ -61,8 +63,15 @@ std::shared_ptr<MeshModel> mesh_of_points(std::vector<Vec3> points, std::string 
   return mesh;
 }
 
-Result<std::shared_ptr<const MeshModel>> mesh_of_file(ScriptContext& c, std::string_view file, const Vec3& scale,
-                                                      int max_vertices) {
+Error not_loaded(std::string_view file) {
+  return Error{
+      fmt::format("'{}' was not loaded like this when the scene ran; a callback must not wait for a disk, so load it "
+                  "once at the top level",
+                  file)};
+}
+
+Result<std::shared_ptr<const MeshModel>> read_mesh(const ScriptContext& c, std::string_view file, const Vec3& scale,
+                                                   int max_vertices) {
   const Result<std::string> path = c.sources->find(c.files, file);
   if (!path) return Error{path.error()};
   Result<std::shared_ptr<const MeshModel>> mesh = c.sources->mesh(*path, scale);
@@ -72,6 +81,31 @@ Result<std::shared_ptr<const MeshModel>> mesh_of_file(ScriptContext& c, std::str
   changed->hull = hull.vertices;
   changed->hull_error = hull.error;
   return std::shared_ptr<const MeshModel>(std::move(changed));
+}
+
+Result<std::shared_ptr<const MeshModel>> mesh_of_file(ScriptContext& c, std::string_view file, const Vec3& scale,
+                                                      int max_vertices) {
+  const std::string key = fmt::format("{}|{:a}|{:a}|{:a}|{}", file, scale.x, scale.y, scale.z, max_vertices);
+  const auto known = c.loaded_meshes.find(key);
+  if (known != c.loaded_meshes.end()) return known->second;
+  if (c.answer.top_level == 0) return not_loaded(file);
+  Result<std::shared_ptr<const MeshModel>> mesh = read_mesh(c, file, scale, max_vertices);
+  if (mesh) c.loaded_meshes[key] = *mesh;
+  return mesh;
+}
+
+Result<std::shared_ptr<const BodyModel>> model_of_file(ScriptContext& c, std::string_view file) {
+  const std::string key = fmt::format("{}|{}", file, options_key(c.import));
+  const auto known = c.loaded_models.find(key);
+  if (known != c.loaded_models.end()) return known->second;
+  if (c.answer.top_level == 0) return not_loaded(file);
+  const Result<std::string> path = c.sources->find(c.files, file);
+  if (!path) return Error{path.error()};
+  Result<std::shared_ptr<const BodyModel>> model = c.sources->model(*path, c.import);
+  if (!model) return model;
+  say_problems(**model);
+  c.loaded_models[key] = *model;
+  return model;
 }
 
 }  // namespace
@@ -176,6 +210,7 @@ std::int32_t add_child(void* c, std::int32_t slot, std::int32_t generation, std:
   Shape* shape = thing_of<Shape>(context, id_of(slot, generation));
   const Shape* child = thing_of<Shape>(context, id_of(child_slot, child_generation));
   if (shape == nullptr || child == nullptr) return kGone;
+  context.world->undo().keep(*shape);
   const Result<void> done = shape->add_child(*child, pose_at(pose));
   return done ? kOk : context.refuse(done.error());
 }
@@ -196,6 +231,11 @@ std::int32_t add_mesh_shape(void* c, const char* name, std::int32_t length, cons
     model.mesh = *mesh;
   } else {
     std::vector<Vec3> points = context.mesh_points;
+    if (context.answer.top_level == 0 && points.size() > kMostPoints) {
+      return context.refuse(
+          fmt::format("a convex mesh of {} points takes long; in a callback up to {}, more at the top level",
+                      points.size(), kMostPoints));
+    }
     for (Vec3& point : points) point *= scale;
     model.mesh = mesh_of_points(std::move(points), std::string(text_of(name, length)), max_vertices, 0);
   }
@@ -227,17 +267,8 @@ void urdf_package_path(void* c, const char* path, std::int32_t length) {
 std::int32_t load_urdf(void* c, const char* path, std::int32_t path_length, const char* name, std::int32_t length,
                        const double* pose) {
   ScriptContext& context = context_of(c);
-  const Result<std::string> file = context.sources->find(context.files, text_of(path, path_length));
-  if (!file) return context.refuse(file.error());
-  const bool known = context.sources->has_model(*file);
-  if (!known && context.answer.top_level == 0) {
-    return context.refuse(fmt::format(
-        "'{}' was not loaded when the scene ran; a callback must not wait for a disk, so load it once at the top level",
-        text_of(path, path_length)));
-  }
-  const Result<std::shared_ptr<const BodyModel>> model = context.sources->model(*file, context.import);
+  const auto model = model_of_file(context, text_of(path, path_length));
   if (!model) return context.refuse(model.error());
-  if (!known) say_problems(**model);
   place(context.build, pose);
   const std::string body_name = length > 0 ? std::string(text_of(name, length)) : (*model)->name;
   const Result<Body*> body = context.world->add_body(*model, body_name, context.build);

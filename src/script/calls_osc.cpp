@@ -8,6 +8,8 @@ namespace limber::calls {
 
 namespace {
 
+constexpr std::size_t kMostHeld = 10000;
+
 // address against pattern, name by name; an empty name in the pattern (`//`) stands for any depth
 bool pieces_match(std::span<const std::string_view> pattern, std::span<const std::string_view> address, int& budget) {
   if (--budget < 0) return false;
@@ -88,17 +90,18 @@ void message_text(void* c, const char* text, std::int32_t length) {
 
 std::int32_t message_send(void* c, std::int32_t way, double ip, std::int32_t port) {
   ScriptContext& context = context_of(c);
-  if (way == 0) {
-    context.host.send(std::move(context.message));
-  } else if (way == 1) {
-    if (!context.handling_message) {
-      return context.refuse("osc:reply answers the message that is being handled: call it inside an osc:on function");
-    }
-    context.host.reply(context.sender, std::move(context.message));
-  } else {
-    const Origin to{Hand::osc, static_cast<std::uint32_t>(ip), static_cast<std::uint16_t>(port)};
-    context.host.send_direct(to, std::move(context.message));
+  if (way == 1 && !context.handling_message) {
+    return context.refuse("osc:reply answers the message that is being handled: call it inside an osc:on function");
   }
+  if (context.held.size() >= kMostHeld) {
+    return context.refuse(fmt::format("one call may send up to {} messages", kMostHeld));
+  }
+  using Way = ScriptContext::Way;
+  const Origin direct{Hand::osc, static_cast<std::uint32_t>(ip), static_cast<std::uint16_t>(port)};
+  context.held.push_back({way == 0   ? Way::all
+                          : way == 1 ? Way::sender
+                                     : Way::direct,
+                          way == 1 ? context.sender : direct, std::move(context.message)});
   return kOk;
 }
 

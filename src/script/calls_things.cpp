@@ -10,7 +10,7 @@ namespace limber::calls {
 
 namespace {
 
-enum Kind : std::int32_t { bodies, parts, joints, motors, shapes };
+enum Kind : std::int32_t { bodies, parts, joints, motors, shapes, behaviors, groups };
 
 // the i-th of a span of owned things, or a null id behind the end; the count when i is -1
 template <class T>
@@ -20,14 +20,40 @@ std::int32_t item(ScriptContext& c, std::span<const std::unique_ptr<T>> list, st
   return c.tell(at < list.size() ? list[at]->id() : NodeId{});
 }
 
+template <class T>
+std::int32_t item(ScriptContext& c, std::span<T* const> list, std::int32_t i) {
+  if (i < 0) return static_cast<std::int32_t>(list.size());
+  const auto at = static_cast<std::size_t>(i);
+  return c.tell(at < list.size() ? list[at]->id() : NodeId{});
+}
+
 std::int32_t list_at(ScriptContext& c, NodeId id, std::int32_t kind, std::int32_t i) {
   if (kind == bodies) return item(c, c.world->bodies(), i);
   if (kind == shapes) return item(c, c.world->shapes(), i);
+  if (const Behavior* behavior = behavior_of(c, id)) {
+    c.world->behaviors().follow_bodies();
+    if (kind == parts) return item(c, behavior->parts(), i);
+    if (kind == joints) return item(c, behavior->joints(), i);
+    return item(c, behavior->motors(), i);
+  }
   const Body* body = thing_of<Body>(c, id);
   if (body == nullptr) return kGone;
+  if (kind == behaviors) return item(c, body->behaviors(), i);
   if (kind == parts) return item(c, body->parts(), i);
   if (kind == joints) return item(c, body->joints(), i);
   return item(c, body->motors(), i);
+}
+
+// a name among what a thing has
+template <class T>
+std::int32_t found_among(ScriptContext& c, std::span<T* const> list, std::string_view kind, NodeId of,
+                         std::string_view name) {
+  for (const T* each : list) {
+    if (each->name() == name) return c.tell(each->id());
+  }
+  std::vector<std::string_view> names;
+  for (const T* each : list) names.push_back(each->name());
+  return c.refuse(fmt::format("{} has no {} '{}'{}", label_of(c, of), kind, printable(name), name_hint(name, names)));
 }
 
 template <class T>
@@ -58,12 +84,10 @@ std::int32_t name(void* c, std::int32_t slot, std::int32_t generation) {
 
 std::int32_t owner(void* c, std::int32_t slot, std::int32_t generation) {
   ScriptContext& context = context_of(c);
-  const NodeId id = id_of(slot, generation);
-  const Body* body = nullptr;
-  if (const Part* part = thing_of<Part>(context, id)) body = &part->body();
-  if (const Joint* joint = thing_of<Joint>(context, id)) body = &joint->body();
-  if (const Motor* motor = thing_of<Motor>(context, id)) body = &motor->joint().body();
-  return context.tell(body == nullptr ? NodeId{} : body->id());
+  // a body's things stand in its groups of parts, joints …
+  const Store& store = context.world->store();
+  const NodeId above = store.parent(store.parent(id_of(slot, generation)));
+  return context.tell(thing_of<Body>(context, above) == nullptr ? NodeId{} : above);
 }
 
 std::int32_t related(void* c, std::int32_t slot, std::int32_t generation, std::int32_t which) {
@@ -98,8 +122,19 @@ std::int32_t find(void* c, std::int32_t slot, std::int32_t generation, std::int3
   const std::string_view wanted = text_of(name, length);
   if (kind == bodies) return found(context, world.find_body(wanted), world.bodies(), "body", "there is", wanted);
   if (kind == shapes) return found(context, world.find_shape(wanted), world.shapes(), "shape", "there is", wanted);
-  const Body* body = thing_of<Body>(context, id_of(slot, generation));
+  const NodeId id = id_of(slot, generation);
+  if (kind == groups) {
+    const std::vector<BehaviorGroup*> all = world.behaviors().groups();
+    return found_among<BehaviorGroup>(context, all, "group behavior", id, wanted);
+  }
+  if (const Behavior* behavior = behavior_of(context, id)) {
+    if (kind == parts) return found_among(context, behavior->parts(), "part", id, wanted);
+    if (kind == joints) return found_among(context, behavior->joints(), "joint", id, wanted);
+    return found_among(context, behavior->motors(), "motor", id, wanted);
+  }
+  const Body* body = thing_of<Body>(context, id);
   if (body == nullptr) return kGone;
+  if (kind == behaviors) return found_among(context, body->behaviors(), "behavior", id, wanted);
   // texts are made only when they are needed: a look-up in every tick must not allocate
   const auto in_body = [&](auto* thing, auto list, std::string_view kind_name) {
     if (thing != nullptr) return context.tell(thing->id());
@@ -111,7 +146,8 @@ std::int32_t find(void* c, std::int32_t slot, std::int32_t generation, std::int3
 }
 
 double order(void* c, std::int32_t slot, std::int32_t generation) {
-  // bodies first to last, within a body itself, its parts, joints, motors; then shapes; the gone ones last
+  // bodies first to last, within a body itself, its parts, joints, motors, behaviours; then shapes, groups; the gone
+  // ones last
   const ScriptContext& context = context_of(c);
   const World& world = *context.world;
   const NodeId id = id_of(slot, generation);
@@ -131,6 +167,15 @@ double order(void* c, std::int32_t slot, std::int32_t generation) {
   if (const Motor* motor = thing_of<Motor>(context, id)) {
     const Body& body = motor->joint().body();
     return within(body, 3, place_in(body.motors(), motor));
+  }
+  if (const Behavior* behavior = behavior_of(context, id)) {
+    const std::span<Behavior* const> all = behavior->body().behaviors();
+    return within(behavior->body(), 4,
+                  static_cast<std::size_t>(std::find(all.begin(), all.end(), behavior) - all.begin()));
+  }
+  if (const BehaviorGroup* group = group_of(context, id)) {
+    const std::vector<BehaviorGroup*> all = world.behaviors().groups();
+    return kShapes * 1.25 + static_cast<double>(std::find(all.begin(), all.end(), group) - all.begin());
   }
   if (const Shape* shape = thing_of<Shape>(context, id)) {
     return kShapes + static_cast<double>(place_in(world.shapes(), shape));

@@ -154,6 +154,13 @@ std::int32_t set_choice(void* c, std::int32_t slot, std::int32_t generation, std
                                     name_hint(wanted, r.choices)));
 }
 
+LimberForces* forces(void* c) { return context_of(c).forces.view(); }
+
+void forces_full(void* c) {
+  ScriptContext& context = context_of(c);
+  if (!context.forces.grow()) context.forces.apply_kept(*context.world);
+}
+
 std::int32_t act(void* c, std::int32_t slot, std::int32_t generation, std::int32_t row, const double* numbers,
                  std::int32_t count) {
   ScriptContext& context = context_of(c);
@@ -171,6 +178,7 @@ std::int32_t act(void* c, std::int32_t slot, std::int32_t generation, std::int32
     return context.refuse(
         fmt::format("{}: '{}' takes finite numbers, not {}", label_of(context, id), r.name, values_text(args)));
   }
+  context.forces.apply_kept(*context.world);  // what was pushed before comes before
   const Result<void> done = r.act(context.world->store().thing(id), args);
   if (!done) return context.refuse(fmt::format("{}: '{}' {}", label_of(context, id), r.name, done.error()));
   return kOk;

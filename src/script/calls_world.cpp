@@ -7,10 +7,23 @@
 #include "base/log.h"
 #include "base/text.h"
 #include "params/units.h"
+#include "script/behavior_scripts.h"
 #include "script/context.h"
+#include "script/guard.h"
 #include "script/noise.h"
 
 namespace limber::calls {
+
+namespace {
+
+Random& generator_of(ScriptContext& c, std::int32_t slot, std::int32_t generation) {
+  if (slot < -1) return c.behaviors->generator(-2 - slot);
+  const NodeId id = id_of(slot, generation);
+  // one that outlives its behaviour draws from the scene's
+  return slot >= 0 && c.alive(id) ? static_cast<Behavior*>(c.world->store().thing(id))->random() : c.generator();
+}
+
+}  // namespace
 
 std::int32_t hint(void* c, const char* written, std::int32_t length, const char* names, std::int32_t names_length) {
   std::vector<std::string_view> list;
@@ -26,18 +39,68 @@ std::int32_t matches(void*, const char* pattern, std::int32_t pattern_length, co
   return pattern_match(text_of(pattern, pattern_length), text_of(name, length)) ? 1 : 0;
 }
 
+const LimberMatch* match(void* c) { return reinterpret_cast<const LimberMatch*>(&context_of(c).match); }
+
+std::int32_t find_match(void* c, const char* text, std::int32_t length, const char* pattern,
+                        std::int32_t pattern_length, std::int32_t from, std::int32_t anchors) {
+  ScriptContext& context = context_of(c);
+  switch (context.search.find(text_of(text, length), text_of(pattern, pattern_length), static_cast<std::size_t>(from),
+                              anchors != 0, context.match)) {
+    case Found::yes:
+      return 1;
+    case Found::no:
+      return 0;
+    case Found::fault:
+      return context.refuse(context.search.fault());
+    case Found::too_long:
+      break;
+  }
+  return context.refuse(
+      "this pattern takes too many steps on this text; make it simpler (fewer * + - next to each other), or the text "
+      "shorter");
+}
+
+std::int32_t find_plain(void* c, const char* text, std::int32_t length, const char* wanted, std::int32_t wanted_length,
+                        std::int32_t from) {
+  const std::size_t at = context_of(c).search.find_plain(text_of(text, length), text_of(wanted, wanted_length),
+                                                         static_cast<std::size_t>(from));
+  return at == std::string_view::npos ? -1 : static_cast<std::int32_t>(at);
+}
+
 void print(void* c, const char* text, std::int32_t length) { context_of(c).host.print(text_of(text, length)); }
 
 void warn(void*, const char* text, std::int32_t length) { log_line(LogLevel::warning, text_of(text, length)); }
 
-void script_error(void* c, const char* file, std::int32_t file_length, std::int32_t line, const char* text,
-                  std::int32_t length) {
-  context_of(c).host.script_error(text_of(file, file_length), line, text_of(text, length));
+void report(void* c) {
+  ScriptContext& context = context_of(c);
+  const ScriptFault& fault = context.guard->fault();
+  context.host.script_error(fault.file, fault.line, fault.text);
 }
 
-std::int32_t read_lib(void* c, const char* name, std::int32_t length) {
+std::int32_t stopped(void* c) {
   ScriptContext& context = context_of(c);
-  const Result<std::string> file = context.sources->find_lib(context.files, text_of(name, length));
+  if (!context.guard->stopped()) return 0;
+  context.say(std::string(context.guard->stop_file()));
+  context.answer.number[0] = context.guard->stop_line();
+  return 1;
+}
+
+std::int32_t fault(void* c) {
+  ScriptContext& context = context_of(c);
+  return context.say(context.guard->fault().text);
+}
+
+std::int32_t stop_text(void* c) {
+  ScriptContext& context = context_of(c);
+  return context.say(context.guard->stop_text());
+}
+
+std::int32_t read_lib(void* c, std::int32_t of, const char* name, std::int32_t length) {
+  ScriptContext& context = context_of(c);
+  BehaviorFile* const behavior = of < 0 ? nullptr : &context.behaviors->file(of);
+  const Result<std::string> file =
+      behavior == nullptr ? context.sources->find_lib(context.files, text_of(name, length))
+                          : context.sources->find_behavior_lib(context.files, text_of(name, length), behavior->path);
   if (!file) return context.refuse(file.error());
   Result<std::string> text = context.sources->text(*file);
   if (!text) return context.refuse(text.error());
@@ -45,13 +108,17 @@ std::int32_t read_lib(void* c, const char* name, std::int32_t length) {
   return context.say(context.files.shown(*file) + "\n" + *text);
 }
 
-double random_uniform(void* c) { return context_of(c).generator().uniform(); }
+double random_uniform(void* c, std::int32_t slot, std::int32_t generation) {
+  return generator_of(context_of(c), slot, generation).uniform();
+}
 
-double random_normal(void* c) { return context_of(c).generator().normal(); }
+double random_normal(void* c, std::int32_t slot, std::int32_t generation) {
+  return generator_of(context_of(c), slot, generation).normal();
+}
 
-std::int32_t random_direction(void* c) {
+std::int32_t random_direction(void* c, std::int32_t slot, std::int32_t generation) {
   ScriptContext& context = context_of(c);
-  const Vec3 v = context.generator().direction();
+  const Vec3 v = generator_of(context, slot, generation).direction();
   for (int i = 0; i < 3; i++) context.answer.number[i] = v[i];
   return kOk;
 }
@@ -74,13 +141,15 @@ std::int32_t contact(void* c, std::int32_t index) {
   return kOk;
 }
 
-void ask_reset(void* c) { context_of(c).host.ask_reset(); }
+void ask_reset(void* c) { context_of(c).reset_wanted = true; }
+
+void param_begin(void* c) { context_of(c).param_rows.clear(); }
 
 std::int32_t param_row(void* c, const char* name, std::int32_t length, std::int32_t type, const double* initial,
                        const double* low, const double* high) {
   ScriptContext& context = context_of(c);
   const std::string_view wanted = text_of(name, length);
-  if (context.param_rows.size() >= 64) return context.refuse("params: a scene may have 64 parameters");
+  if (context.param_rows.size() >= 64) return context.refuse("params: more than 64 parameters");
   for (const Row& other : context.param_rows) {
     if (same_name(other.name, wanted)) {
       return context.refuse(fmt::format("params: '{}' and '{}' are the same name (case and underscores don't count)",

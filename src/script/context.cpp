@@ -3,13 +3,22 @@
 
 #include <fmt/format.h>
 
+#include "script/behavior_scripts.h"
+#include "script/guard.h"
+
 namespace limber {
 
-ScriptContext::ScriptContext(World& w, ScriptHost& h, SceneOptions o) : world(&w), host(h), options(std::move(o)) {
+ScriptContext::ScriptContext(World& w, ScriptHost& h, SceneOptions o)
+    : world(&w),
+      host(h),
+      options(std::move(o)),
+      search([this] { return guard->stop_asked(); }),
+      behaviors(std::make_shared<BehaviorScripts>(*this)) {
   world->store().show_view(view);
 }
 
 ScriptContext::~ScriptContext() {
+  behaviors->close();
   if (world != nullptr) world->store().hide_view(view);
 }
 
@@ -39,10 +48,54 @@ Random& ScriptContext::generator() {
 
 std::uint64_t ScriptContext::hash(std::uint64_t start) {
   const auto& words = generator().state();
-  start = hash_bytes({reinterpret_cast<const char*>(words.data()), sizeof words}, start);
+  start = behaviors->hash(hash_bytes({reinterpret_cast<const char*>(words.data()), sizeof words}, start));
   if (params == nullptr) return start;
   const double* kept = std::as_const(world->store()).kept_block(params->id());
   return hash_bytes({reinterpret_cast<const char*>(kept), params->table().kept_width() * sizeof(double)}, start);
+}
+
+void ScriptContext::begin_call() {
+  answer.call = static_cast<std::int32_t>(static_cast<std::uint32_t>(answer.call) + 1);  // wraps after a day
+  random_before_ = random;
+  seeded_before_ = seeded_with;
+  reset_wanted = false;
+  world->undo().begin();
+}
+
+void ScriptContext::end_call(bool good) {
+  if (good) {
+    world->undo().end();
+    forces.apply(world->loads());
+    for (Held& h : held) {
+      if (h.way == Way::all) {
+        host.send(std::move(h.message));
+      } else if (h.way == Way::sender) {
+        host.reply(h.to, std::move(h.message));
+      } else {
+        host.send_direct(h.to, std::move(h.message));
+      }
+    }
+    if (reset_wanted) host.ask_reset();
+  } else {
+    forces.clear();
+    world->undo().take_back();
+    random = random_before_;
+    seeded_with = seeded_before_;
+  }
+  held.clear();
+}
+
+Behavior* behavior_of(const ScriptContext& c, NodeId id) {
+  const Store& store = c.world->store();
+  if (!c.alive(id) || store.table(id).name() != "behavior") return nullptr;
+  return static_cast<Behavior*>(store.thing(id));
+}
+
+BehaviorGroup* group_of(const ScriptContext& c, NodeId id) {
+  const Store& store = c.world->store();
+  // Store's own nodes without rows are called groups too
+  if (!c.alive(id) || store.is_group(id) || store.table(id).name() != "group") return nullptr;
+  return static_cast<BehaviorGroup*>(store.thing(id));
 }
 
 std::string label_of(const ScriptContext& c, NodeId id) {
@@ -52,7 +105,9 @@ std::string label_of(const ScriptContext& c, NodeId id) {
   if (table == &World::table()) return "sim";
   const std::string& name = store.name(id);
   if (table == &Body::table() || table == &Shape::table()) return fmt::format("{} '{}'", table->name(), name);
-  if (table == &Part::table() || table == &Joint::table() || table == &Motor::table()) {
+  if (group_of(c, id) != nullptr) return fmt::format("group '{}'", name);
+  if (table == &Part::table() || table == &Joint::table() || table == &Motor::table() ||
+      behavior_of(c, id) != nullptr) {
     return fmt::format("{} '{}/{}'", table->name(), store.name(store.parent(store.parent(id))), name);
   }
   return "params";

@@ -1,6 +1,7 @@
 // ScriptContext: what the functions behind the door work on; one for each scene. [sim]
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <memory>
 #include <optional>
@@ -13,14 +14,20 @@
 #include "model/urdf_import.h"
 #include "script/c_api.h"
 #include "script/files.h"
+#include "script/force_queue.h"
 #include "script/host.h"
+#include "script/match.h"
 #include "script/params_node.h"
 #include "script/run_inputs.h"
 #include "script/scene_options.h"
 #include "script/sources.h"
+#include "sim/neighbors.h"
 #include "sim/world.h"
 
 namespace limber {
+
+class BehaviorScripts;
+class Guard;
 
 struct ScriptContext {
   ScriptContext(World& w, ScriptHost& h, SceneOptions o);
@@ -39,13 +46,15 @@ struct ScriptContext {
   LimberAnswer answer{};
   std::string text;  ///< What `answer.text` points to.
   LimberRow row{};
+  MatchSearch search;  ///< Ends early when the call is to be stopped.
+  Match match;
 
   // generator of the scene's file: of the seed and the file's name, anew when the top level changes the seed
   std::string random_name;
   std::optional<std::uint64_t> seeded_with;
   Random random;
   Random& generator();
-  /// The world's hash with the bits of the scene's generators and parameters.
+  /// The world's hash with the bits of the generators of all files, and of the scene's parameters.
   std::uint64_t hash(std::uint64_t start);
 
   // gathered by several calls before the one that makes something of them
@@ -54,7 +63,16 @@ struct ScriptContext {
   BuildOptions build;
   Message message;
   std::vector<Row> param_rows;
+  std::array<Selection, 5> selections;  ///< Of parts, joints, motors, bodies, neighbour parts.
 
+  // walks over neighbours, several at a time where loops stand inside each other
+  static constexpr std::size_t kWalks = 16;
+  std::array<LimberWalk, kWalks> walks{};
+  std::array<std::vector<Neighbor>, kWalks> found;
+
+  // what the run loaded, by what it asked for: callbacks may have it again, since they must not wait for a disk
+  std::map<std::string, std::shared_ptr<const BodyModel>> loaded_models;
+  std::map<std::string, std::shared_ptr<const MeshModel>> loaded_meshes;
   OscPlan plan;
   Origin sender;  ///< Of the message that is handled now.
   bool handling_message = false;
@@ -63,6 +81,23 @@ struct ScriptContext {
   std::uint64_t rerun_rows = 0;           ///< Parameters with `rerun`, a bit a row.
   std::optional<double> timers_at;        ///< Time at which timers were looked at last.
   std::span<std::int32_t* const> things;  ///< Slot and generation of every handle, while these are given others.
+  std::shared_ptr<BehaviorScripts> behaviors;  ///< Shared with the behaviours that live in the world.
+
+  // guarded calls: what one asks of the outside waits until it has ended well
+  Guard* guard = nullptr;  ///< Of the scene's Vm.
+  enum class Way : std::uint8_t { all, sender, direct };
+  struct Held {
+    Way way;
+    Origin to;
+    Message message;
+  };
+  std::vector<Held> held;
+  bool reset_wanted = false;
+  ForceQueue forces;
+  /// From here on everything that a script does is kept for the undo.
+  void begin_call();
+  /// A good one's messages go out; a bad one is taken back, its random draws too.
+  void end_call(bool good);
 
   // answers
   std::int32_t say(std::string what);
@@ -72,6 +107,10 @@ struct ScriptContext {
   }
   std::int32_t tell(NodeId id);
   bool alive(NodeId id) const { return world->store().alive(id); }
+
+ private:
+  Random random_before_;
+  std::optional<std::uint64_t> seeded_before_;
 };
 
 inline ScriptContext& context_of(void* c) { return *static_cast<ScriptContext*>(c); }
@@ -87,6 +126,9 @@ T* thing_of(const ScriptContext& c, NodeId id) {
   if (!c.alive(id) || &c.world->store().table(id) != &T::table()) return nullptr;
   return static_cast<T*>(c.world->store().thing(id));
 }
+/// The behaviour, or the group, of an id, when it is alive and one, else null.
+Behavior* behavior_of(const ScriptContext& c, NodeId id);
+BehaviorGroup* group_of(const ScriptContext& c, NodeId id);
 /// How errors name a thing: "motor 'arm/joint_2'", "body 'arm'", "sim".
 std::string label_of(const ScriptContext& c, NodeId id);
 

@@ -1,12 +1,15 @@
 // Looking for files: beside the scene, above it, in the installed data.
 #include "script/files.h"
 
+#include <algorithm>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
 #include <vector>
 
 #include <fmt/format.h>
+
+#include "sim/behavior_type.h"
 
 namespace limber {
 
@@ -36,6 +39,43 @@ std::vector<fs::path> upwards(fs::path folder) {
     if (above.empty() || above == folder) return list;
     folder = above;
   }
+}
+
+// names of the Lua files in a folder, without the ending, by alphabet; none of a folder that isn't there
+std::vector<std::string> lua_files(const fs::path& folder) {
+  std::vector<std::string> names;
+  std::error_code fault;
+  for (fs::directory_iterator at(folder, fault); !fault && at != fs::directory_iterator(); at.increment(fault)) {
+    const fs::path& path = at->path();
+    if (path.extension() == ".lua" && is_file(path)) names.push_back(path.stem().string());
+  }
+  std::sort(names.begin(), names.end());
+  return names;
+}
+
+// "a.b" as a/b.lua in the first of the folders that has it; a link must not lead out of its folder
+Result<std::string> find_module(std::string_view name, const std::vector<fs::path>& folders,
+                                std::vector<std::string>* passed) {
+  std::string file(name);
+  std::replace(file.begin(), file.end(), '.', '/');
+  std::string looked;
+  for (const fs::path& folder : folders) {
+    const fs::path place = folder / (file + ".lua");
+    looked += fmt::format("\n  {}", place.string());
+    if (!is_file(place)) {
+      if (passed != nullptr) passed->push_back(place.string());
+      continue;
+    }
+    std::error_code fault;
+    const fs::path real = fs::canonical(place, fault);
+    const fs::path real_folder = fs::canonical(folder, fault);
+    const fs::path inside = real.lexically_relative(real_folder);
+    if (fault || inside.empty() || *inside.begin() == "..") {
+      return Error{fmt::format("'{}' leads out of {}; keep the file itself there", name, folder.string())};
+    }
+    return place.string();
+  }
+  return Error{fmt::format("there is no module '{}'; looked for{}", name, looked)};
 }
 
 }  // namespace
@@ -75,31 +115,51 @@ Result<std::string> ScriptFiles::find(std::string_view name, std::vector<std::st
 }
 
 Result<std::string> ScriptFiles::find_lib(std::string_view name, std::vector<std::string>* passed) const {
-  std::string file(name);
-  for (char& c : file) {
-    if (c == '.') c = '/';
-  }
-  std::string looked;
+  std::vector<fs::path> folders;
   for (const std::string& root : {show_, data_dir_}) {
-    if (root.empty()) continue;
-    const fs::path folder = fs::path(root) / "scripts" / "lib";
-    const fs::path place = folder / (file + ".lua");
-    looked += fmt::format("\n  {}", place.string());
-    if (!is_file(place)) {
-      if (passed != nullptr) passed->push_back(place.string());
-      continue;
-    }
-    // a link must not lead outside
-    std::error_code fault;
-    const fs::path real = fs::canonical(place, fault);
-    const fs::path real_folder = fs::canonical(folder, fault);
-    const fs::path inside = real.lexically_relative(real_folder);
-    if (fault || inside.empty() || *inside.begin() == "..") {
-      return Error{fmt::format("'{}' leads out of {}; keep the file itself there", name, folder.string())};
-    }
-    return place.string();
+    if (!root.empty()) folders.push_back(fs::path(root) / "scripts" / "lib");
   }
-  return Error{fmt::format("there is no module '{}'; looked for{}", name, looked)};
+  return find_module(name, folders, passed);
+}
+
+Result<std::string> ScriptFiles::find_behavior_lib(std::string_view name, const std::string& behavior,
+                                                   std::vector<std::string>* passed) const {
+  std::vector<fs::path> folders = {fs::path(behavior).parent_path() / "lib"};
+  for (const std::string& root : {show_, data_dir_}) {
+    const fs::path folder = fs::path(root) / "behaviors_lua" / "lib";
+    if (!root.empty() && std::find(folders.begin(), folders.end(), folder) == folders.end()) folders.push_back(folder);
+  }
+  return find_module(name, folders, passed);
+}
+
+std::vector<std::string> ScriptFiles::behavior_folders() const {
+  std::vector<std::string> folders;
+  for (const fs::path& place : upwards(scene_folder_)) folders.push_back((place / "behaviors_lua").string());
+  const std::string installed = (absolute_of(data_dir_) / "behaviors_lua").string();
+  const bool known = std::find(folders.begin(), folders.end(), installed) != folders.end();
+  if (!data_dir_.empty() && !known) folders.push_back(installed);
+  return folders;
+}
+
+std::string ScriptFiles::find_behavior(std::string_view type, std::vector<std::string>* passed) const {
+  const std::string wanted = plain_type_name(type);
+  for (const std::string& folder : behavior_folders()) {
+    for (const std::string& name : lua_files(folder)) {
+      if (plain_type_name(name) == wanted) return (fs::path(folder) / (name + ".lua")).string();
+    }
+    if (passed != nullptr) passed->push_back((fs::path(folder) / (wanted + ".lua")).string());
+  }
+  return {};
+}
+
+std::vector<std::string> ScriptFiles::behavior_names() const {
+  std::vector<std::string> names;
+  for (const std::string& folder : behavior_folders()) {
+    for (std::string& name : lua_files(folder)) {
+      if (std::find(names.begin(), names.end(), name) == names.end()) names.push_back(std::move(name));
+    }
+  }
+  return names;
 }
 
 Result<std::string> read_script(const std::string& path) {

@@ -22,8 +22,18 @@ class ScriptFiles {
   /// As given, then from the scene's folder upwards, then in the installed data. The error lists every place. `passed`
   /// gets the places where it was not: a file that comes there is another answer.
   Result<std::string> find(std::string_view name, std::vector<std::string>* passed = nullptr) const;
-  /// The file of `require "a.b"`: scripts/lib/a/b.lua of the show, then of the installed data; never outside.
+  /// The file of a scene's `require "a.b"`: scripts/lib/a/b.lua of the show, then of the installed data; never outside.
   Result<std::string> find_lib(std::string_view name, std::vector<std::string>* passed = nullptr) const;
+  /// The file of a behaviour's `require`: lib/ beside its file, then behaviors_lua/lib of the show and of the data.
+  Result<std::string> find_behavior_lib(std::string_view name, const std::string& behavior,
+                                        std::vector<std::string>* passed = nullptr) const;
+  /// The file of a behaviour's type, by the naming rule: behaviors_lua/ beside the scene, above it, then of the
+  /// installed data; empty: there is none.
+  std::string find_behavior(std::string_view type, std::vector<std::string>* passed = nullptr) const;
+  /// The folders where behaviours' files are looked for, the nearest first, whether they exist or not.
+  std::vector<std::string> behavior_folders() const;
+  /// Names of the types that have a file there, each once.
+  std::vector<std::string> behavior_names() const;
 
  private:
   std::string scene_folder_;

@@ -8,9 +8,9 @@
 
 namespace limber {
 
-Scene::Scene(World& world, ScriptHost& host, SceneOptions options)
+Scene::Scene(World& world, ScriptHost& host, SceneOptions options, VmMode wanted)
     : context_(std::make_unique<ScriptContext>(world, host, std::move(options))),
-      vm_(std::make_unique<Vm>(*context_)) {}
+      vm_(std::make_unique<Vm>(*context_, wanted)) {}
 
 Scene::~Scene() = default;
 
@@ -66,6 +66,16 @@ bool Scene::message(const Message& message, const Origin& origin) {
 void Scene::collect_garbage() { vm_->collect_garbage(); }
 
 std::uint64_t Scene::state_hash(std::uint64_t start) const { return context_->hash(start); }
+
+VmMode Scene::mode() const { return vm_->mode(); }
+
+bool Scene::arm() { return vm_->arm(); }
+
+void Scene::disarm() { vm_->disarm(); }
+
+Evaluation Scene::evaluate(std::string_view text) { return vm_->ask("evaluate", text); }
+
+Evaluation Scene::complete(std::string_view text) { return vm_->ask("complete", text); }
 
 std::string Scene::names() { return vm_->names(); }
 

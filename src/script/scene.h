@@ -5,8 +5,10 @@
 #include <functional>
 #include <memory>
 #include <string>
+#include <string_view>
 #include <vector>
 
+#include "base/evaluation.h"
 #include "base/id.h"
 #include "base/message.h"
 #include "base/result.h"
@@ -30,7 +32,8 @@ struct ScriptPlace {
 class Scene {
  public:
   /// World and host outlive the scene. What a scene made in the world stays when the scene goes, but its parameters.
-  Scene(World& world, ScriptHost& host, SceneOptions options);
+  /// Live when that is wanted and no other scene of the process is: only one can run compiled.
+  Scene(World& world, ScriptHost& host, SceneOptions options, VmMode wanted = VmMode::live);
   ~Scene();
   Scene(const Scene&) = delete;
   Scene& operator=(const Scene&) = delete;
@@ -53,6 +56,10 @@ class Scene {
   bool message(const Message& message, const Origin& origin);
   /// After each tick: about 100 µs at most, nothing while there is little to collect.
   void collect_garbage();
+  VmMode mode() const;
+  /// Draft to live: once the other scene has gone, or was disarmed; false while it has not.
+  bool arm();
+  void disarm();
   /// A world's hash with the bits of the scene's generator and parameters.
   std::uint64_t state_hash(std::uint64_t start) const;
 
@@ -69,6 +76,11 @@ class Scene {
   /// Values of the parameters with `rerun`, one after the other.
   void rerun_values(std::vector<double>& out) const;
 
+  /// Runs a text in the scene's environment, as a callback: an expression has a value, statements have none.
+  Evaluation evaluate(std::string_view text);
+  /// The names that may stand at the end of a half-written text: globals, members, and inside quotes names of things.
+  /// Runs nothing of the scene's.
+  Evaluation complete(std::string_view text);
   /// Every name that a scene sees, one a line: globals, library.member, thing.member, thing:method.
   std::string names();
   /// The folder that the scene's show lives in.

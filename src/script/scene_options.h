@@ -6,12 +6,15 @@
 #include <string>
 #include <vector>
 
+#include "script/limits.h"
+
 namespace limber {
 
 struct SceneOptions {
   std::string data_dir;                    ///< Installed data, looked into last; empty: none.
   std::vector<std::string> package_paths;  ///< Where package:// of URDF files is looked for.
   std::optional<std::uint64_t> seed;       ///< Wins over the scene's `sim.seed`.
+  ScriptLimits limits;
 };
 
 }  // namespace limber

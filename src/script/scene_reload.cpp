@@ -1,6 +1,7 @@
 // Scene: what a run beside the show is given of it, and how such a run becomes the show.
 #include <algorithm>
 
+#include "script/behavior_scripts.h"
 #include "script/context.h"
 #include "script/scene.h"
 #include "script/vm.h"
@@ -12,7 +13,7 @@ RunInputs Scene::inputs() {
   RunInputs inputs;
   inputs.tick = c.world->tick();
   inputs.time = c.world->time();
-  inputs.state = vm_->state();
+  inputs.state = vm_->state_text();
   if (c.params != nullptr) inputs.params = c.params->live();
   return inputs;
 }
@@ -51,12 +52,15 @@ std::uint64_t Scene::become_live(World& world, const std::function<NodeId(NodeId
     }
   }
   if (old != nullptr) {
-    vm_->take_state(before->vm_->state());
+    vm_->take_state(before->vm_->state_text());
     c.timers_at = old->timers_at;
+    old->behaviors->close();  // it may go on another thread
     old->world->store().hide_view(old->view);
     old->world = nullptr;
   }
   vm_->become_live(c.timers_at);
+  if (before != nullptr) before->disarm();
+  arm();
   c.host.plan_osc(c.plan);
   return defaults;
 }

@@ -43,6 +43,23 @@ Result<std::string> Sources::find_lib(const ScriptFiles& files, std::string_view
   return path;
 }
 
+Result<std::string> Sources::find_behavior_lib(const ScriptFiles& files, std::string_view name,
+                                               const std::string& behavior) {
+  const std::string key = fmt::format("module {} of {}", name, behavior);
+  if (const std::string* before = known(&Sources::found_, key)) return found_[key] = *before;
+  Result<std::string> path = files.find_behavior_lib(name, behavior, &passed_);
+  if (path) found_[key] = *path;
+  return path;
+}
+
+std::string Sources::find_behavior(const ScriptFiles& files, std::string_view type) {
+  const std::string key = fmt::format("behavior {}", type);
+  if (const std::string* before = known(&Sources::found_, key)) return found_[key] = *before;
+  std::string path = files.find_behavior(type, &passed_);
+  if (!path.empty()) found_[key] = path;
+  return path;
+}
+
 Result<std::string> Sources::text(const std::string& path) {
   if (const std::string* before = known(&Sources::texts_, path)) return texts_[path] = *before;
   Result<std::string> text = read_script(path);
@@ -55,7 +72,6 @@ Result<std::string> Sources::text(const std::string& path) {
 
 Result<std::shared_ptr<const BodyModel>> Sources::model(const std::string& path, const ImportOptions& options) {
   const std::string key = model_key(path, options);
-  model_files_[path] = true;
   contents_.try_emplace(path, 0);  // one that can't be read is to be watched too
   if (const auto* before = known(&Sources::models_, key)) return models_[key] = *before;
   Result<std::shared_ptr<const BodyModel>> model = models().load_urdf(path, options);

@@ -29,11 +29,12 @@ class Sources {
   /// As ScriptFiles finds them.
   Result<std::string> find(const ScriptFiles& files, std::string_view name);
   Result<std::string> find_lib(const ScriptFiles& files, std::string_view name);
+  Result<std::string> find_behavior_lib(const ScriptFiles& files, std::string_view name, const std::string& behavior);
+  /// Empty: there is none.
+  std::string find_behavior(const ScriptFiles& files, std::string_view type);
   /// A script's text.
   Result<std::string> text(const std::string& path);
   Result<std::shared_ptr<const BodyModel>> model(const std::string& path, const ImportOptions& options);
-  /// Whether this run has loaded that URDF file, with whatever options.
-  bool has_model(const std::string& path) const { return model_files_.contains(path); }
   Result<std::shared_ptr<const MeshModel>> mesh(const std::string& path, const Vec3& scale);
 
   /// The run is over: what it did not read of the earlier run's is let go.
@@ -50,7 +51,6 @@ class Sources {
   std::map<std::string, std::string> texts_;
   std::map<std::string, std::uint64_t> contents_;  // by path; 0: not known
   std::map<std::string, std::shared_ptr<const BodyModel>> models_;
-  std::map<std::string, bool> model_files_;
   std::map<std::string, std::shared_ptr<const MeshModel>> meshes_;
   std::vector<std::string> passed_;
 };

@@ -1,13 +1,15 @@
 // The Lua state: opened, filled with the prelude, called, collected.
 #include "script/vm.h"
 
-#include <chrono>
+#include <algorithm>
 
 #include <fmt/format.h>
 #include <lua.hpp>
 
 #include "base/check.h"
 #include "base/log.h"
+#include "base/text.h"
+#include "script/behavior_scripts.h"
 #include "script/context.h"
 #include "script/prelude.h"
 #include "script/scene.h"
@@ -16,11 +18,7 @@ namespace limber {
 
 namespace {
 
-using Clock = std::chrono::steady_clock;
-
-constexpr auto kSlice = std::chrono::microseconds(100);
-constexpr double kGrowthFactor = 1.5;  // a cycle begins when the heap has grown by half and 512 kB
-constexpr double kGrowth = 512;
+constexpr std::size_t kMostArguments = 4000;  // of a message that a handler hears; Lua's stack has an end
 
 void push(lua_State* L, std::string_view text) { lua_pushlstring(L, text.data(), text.size()); }
 
@@ -28,10 +26,6 @@ std::string_view text_at(lua_State* L, int index) {
   std::size_t length = 0;
   const char* text = lua_tolstring(L, index, &length);
   return text == nullptr ? std::string_view("an error without text") : std::string_view(text, length);
-}
-
-double kilobytes(lua_State* L) {
-  return lua_gc(L, LUA_GCCOUNT, 0) + static_cast<double>(lua_gc(L, LUA_GCCOUNTB, 0)) / 1024;
 }
 
 std::string sender_text(const Origin& origin) {
@@ -43,18 +37,82 @@ std::string sender_text(const Origin& origin) {
   return std::string(kHands[static_cast<std::size_t>(origin.hand)]);
 }
 
+// function, arguments … -> whether the guarded call ended well
+template <Guard::Kind kind>
+int guarded(lua_State* L) {
+  Guard& guard = *static_cast<Guard*>(lua_touserdata(L, lua_upvalueindex(1)));
+  lua_pushboolean(L, guard.call(lua_gettop(L) - 1, 0, kind) ? 1 : 0);
+  return 1;
+}
+
+// LuaJIT's compiler looks through all jumps that are open when one more comes, and a hook can't stop it
+constexpr std::size_t kMostJumps = 2000;
+
+std::size_t jumps_in(std::string_view text) {
+  std::size_t count = 0;
+  for (const std::string_view word : {"break", "goto", "elseif"}) {
+    for (auto at = text.find(word); at != text.npos; at = text.find(word, at + word.size())) count++;
+  }
+  return count;
+}
+
+// a text in pieces, between which the compiler can be stopped
+struct Pieces {
+  Guard& guard;
+  const char* text;
+  std::size_t left;
+  static const char* next(lua_State*, void* self, std::size_t* size) {
+    constexpr std::size_t kPiece = 256;
+    auto& pieces = *static_cast<Pieces*>(self);
+    if (pieces.guard.stop_asked()) pieces.left = 0;
+    *size = std::min(kPiece, pieces.left);
+    const char* const piece = pieces.text;
+    pieces.text += *size;
+    pieces.left -= *size;
+    return piece;
+  }
+};
+
+// with the libraries: opening that of the compiler switches it on
+lua_State* open_state() {
+  lua_State* const L = luaL_newstate();
+  luaL_openlibs(L);
+  return L;
+}
+
+// text, name, environment -> function, or nil and what is wrong; never bytecode
+int load_text(lua_State* L) {
+  std::size_t size = 0;
+  const char* const text = lua_tolstring(L, 1, &size);
+  if (jumps_in({text, size}) > kMostJumps) {
+    lua_pushnil(L);
+    lua_pushfstring(L, "%s:1: a text may hold %d times break, goto, elseif; part it", lua_tostring(L, 2) + 1,
+                    static_cast<int>(kMostJumps));
+    return 2;
+  }
+  Pieces pieces{*static_cast<Guard*>(lua_touserdata(L, lua_upvalueindex(1))), text, size};
+  if (lua_loadx(L, &Pieces::next, &pieces, lua_tostring(L, 2), "t") != 0) {
+    lua_pushnil(L);
+    lua_insert(L, -2);
+    return 2;
+  }
+  lua_pushvalue(L, 3);
+  lua_setfenv(L, -2);
+  return 1;
+}
+
 }  // namespace
 
 void Vm::Close::operator()(lua_State* state) const { lua_close(state); }
 
-Vm::Vm(ScriptContext& context) : state_(luaL_newstate()) {
-  lua_State* const L = state_.get();
-  luaL_openlibs(L);
+Vm::Vm(ScriptContext& context, VmMode wanted)
+    : state_(open_state()), guard_(state_.get(), context, context.options.limits) {
+  context.guard = &guard_;
   load_prelude(context);
   keep_entries();
-  lua_gc(L, LUA_GCCOLLECT, 0);
-  used_after_cycle_ = kilobytes(L);
-  lua_gc(L, LUA_GCSTOP, 0);
+  context.behaviors->open(*this);
+  if (wanted == VmMode::live) arm();
+  collector_.emplace(state_.get(), guard_.memory());
 }
 
 Vm::~Vm() = default;
@@ -73,6 +131,14 @@ void Vm::load_prelude(ScriptContext& context) {
   lua_setfield(L, -2, "world_slot");
   lua_pushnumber(L, world.generation);
   lua_setfield(L, -2, "world_generation");
+  const auto guard_function = [&](const char* name, lua_CFunction function) {
+    lua_pushlightuserdata(L, &guard_);
+    lua_pushcclosure(L, function, 1);
+    lua_setfield(L, -2, name);
+  };
+  guard_function("guarded", guarded<Guard::Kind::call>);
+  guard_function("guarded_run", guarded<Guard::Kind::run>);
+  guard_function("load", load_text);
   for (const PreludeFile& file : prelude_files()) {
     const std::string name = fmt::format("=limber {}", file.name);
     int fault = luaL_loadbuffer(L, file.text.data(), file.text.size(), name.c_str());
@@ -101,8 +167,21 @@ void Vm::keep_entries() {
     tick_ = keep("tick");
     message_ = keep("message");
     names_ = keep("names");
+    const int handler = keep("handler");
+    const int stopped_fault = keep("stopped_fault");
+    guard_.use(handler, stopped_fault, keep("failed"));
     lua_pushvalue(L, -1);
     entries_ = luaL_ref(L, LUA_REGISTRYINDEX);
+    warm_ = keep("warm");
+    make_behavior_ = keep("make_behavior");
+    renew_behavior_ = keep("renew_behavior");
+    restore_behavior_ = keep("restore_behavior");
+    behavior_state_ = keep("behavior_state");
+    drop_behavior_ = keep("drop_behavior");
+    behavior_self_ = keep("behavior_self");
+    behavior_start_ = keep("behavior_start");
+    behavior_step_ = keep("behavior_step");
+    behavior_migrate_ = keep("behavior_migrate");
   }
   lua_settop(L, 0);
 }
@@ -118,30 +197,38 @@ bool Vm::call(int arguments, int results) {
   return false;
 }
 
+// LuaJIT works at what scripts will call most before they do
+bool Vm::arm() {
+  if (!guard_.arm()) return false;
+  lua_rawgeti(state_.get(), LUA_REGISTRYINDEX, warm_);
+  call(0, 0);
+  return true;
+}
+
 Result<void> Vm::run(std::string_view text, std::string_view name, ScriptPlace& fault) {
   lua_State* const L = state_.get();
-  lua_gc(L, LUA_GCRESTART, 0);
+  collector_->begin_run();
   lua_rawgeti(L, LUA_REGISTRYINDEX, run_);
   push(L, text);
   push(L, name);
-  Result<void> result;
-  if (!call(2, 3)) {
-    result = Error{fmt::format("{}: the scene could not be run", name)};
-  } else if (!lua_isnil(L, -3)) {
-    result = Error{std::string(text_at(L, -3))};
-    fault = {std::string(text_at(L, -2)), static_cast<int>(lua_tointeger(L, -1))};
-  }
+  const bool called = call(2, 1);
+  const bool good = called && lua_toboolean(L, -1) != 0;
   lua_settop(L, 0);
-  lua_gc(L, LUA_GCSTOP, 0);
-  return result;
+  collector_->end_run();
+  if (good) return {};
+  if (!called) return Error{fmt::format("{}: the scene could not be run", name)};
+  fault = {guard_.fault().file, guard_.fault().line};
+  return Error{guard_.fault().text};
 }
 
 void Vm::start() {
+  collector_->begin_calls();
   lua_rawgeti(state_.get(), LUA_REGISTRYINDEX, start_);
   call(0, 0);
 }
 
 void Vm::tick(double dt) {
+  collector_->begin_calls();
   lua_rawgeti(state_.get(), LUA_REGISTRYINDEX, tick_);
   lua_pushnumber(state_.get(), dt);
   call(1, 0);
@@ -149,10 +236,14 @@ void Vm::tick(double dt) {
 
 bool Vm::message(const Message& message, const Origin& origin) {
   lua_State* const L = state_.get();
+  if (message.args.size() > kMostArguments || lua_checkstack(L, static_cast<int>(message.args.size()) + 8) == 0) {
+    log_warning("{}: {} arguments are more than a script's handler takes ({})", printable(message.address),
+                message.args.size(), kMostArguments);
+    return false;
+  }
   lua_rawgeti(L, LUA_REGISTRYINDEX, message_);
   push(L, message.address);
   push(L, sender_text(origin));
-  luaL_checkstack(L, static_cast<int>(message.args.size()) + 8, "too many arguments");
   for (const Arg& arg : message.args) {
     switch (arg.kind) {
       case Arg::Kind::number:
@@ -169,9 +260,32 @@ bool Vm::message(const Message& message, const Origin& origin) {
         break;
     }
   }
+  collector_->begin_calls();
   const bool heard = call(static_cast<int>(message.args.size()) + 2, 1) && lua_toboolean(L, -1) != 0;
   lua_settop(L, 0);
   return heard;
+}
+
+Evaluation Vm::ask(const char* entry, std::string_view text) {
+  using Kind = Evaluation::Kind;
+  constexpr std::pair<std::string_view, Kind> kKinds[] = {
+      {"value", Kind::value}, {"error", Kind::error}, {"incomplete", Kind::incomplete}, {"names", Kind::names}};
+  lua_State* const L = state_.get();
+  lua_rawgeti(L, LUA_REGISTRYINDEX, entries_);
+  lua_getfield(L, -1, entry);
+  push(L, text);
+  Evaluation said;
+  if (call(1, 3)) {
+    for (const auto& [word, kind] : kKinds) {
+      if (text_at(L, -3) == word) said.kind = kind;
+    }
+    said.text = shortened(text_at(L, -2), kMostEvaluated);
+    said.word = static_cast<std::size_t>(lua_tonumber(L, -1));
+  } else {
+    said = {Kind::error, "the console has a fault, the log tells which"};
+  }
+  lua_settop(L, 0);
+  return said;
 }
 
 std::string Vm::names() {
@@ -183,21 +297,8 @@ std::string Vm::names() {
 }
 
 void Vm::collect_garbage() {
-  lua_State* const L = state_.get();
-  const double used = kilobytes(L);
-  const double limit = used_after_cycle_ * kGrowthFactor + kGrowth;
-  if (!collecting_ && used < limit) return;
-  collecting_ = true;
-  // a script that makes more than a slice can collect gets longer ones
-  const Clock::time_point end = Clock::now() + (used > 2 * limit ? 10 * kSlice : kSlice);
-  do {
-    if (lua_gc(L, LUA_GCSTEP, 1) != 0) {
-      collecting_ = false;
-      used_after_cycle_ = kilobytes(L);
-      break;
-    }
-  } while (Clock::now() < end);
-  lua_gc(L, LUA_GCSTOP, 0);  // a step starts the collector again
+  if (guard_.take_memory_stop()) collector_->collect_all();
+  collector_->after_tick();
 }
 
 }  // namespace limber

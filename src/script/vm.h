@@ -1,13 +1,19 @@
 // Vm: the one LuaJIT state of a scene, with the trusted prelude inside. Everything runs on the simulation thread.
 #pragma once
 
+#include <cstdint>
 #include <memory>
 #include <optional>
 #include <string>
 #include <string_view>
 
+#include "base/evaluation.h"
+#include "base/id.h"
 #include "base/message.h"
 #include "base/result.h"
+#include "script/collector.h"
+#include "script/guard.h"
+#include "sim/behavior.h"
 
 struct lua_State;
 
@@ -18,8 +24,9 @@ struct ScriptPlace;
 
 class Vm {
  public:
-  /// The context is what the prelude's calls work on; it outlives the Vm. [sim]
-  explicit Vm(ScriptContext& context);
+  /// The context is what the prelude's calls work on; it outlives the Vm. Live when that is wanted and no other Vm of
+  /// the process is. [sim]
+  Vm(ScriptContext& context, VmMode wanted);
   ~Vm();
   Vm(const Vm&) = delete;
   Vm& operator=(const Vm&) = delete;
@@ -33,11 +40,28 @@ class Vm {
   void tick(double dt);
   /// The handlers of osc:on that fit; whether there were any. [sim]
   bool message(const Message& message, const Origin& origin);
+  /// Asks an entry of the prelude's 95_console.lua, "evaluate" or "complete", about a text. [sim]
+  Evaluation ask(const char* entry, std::string_view text);
+  // Behaviours of behaviors_lua/ (behavior_scripts.h); a fault without text: it went well.
+  /// Makes the `self` of an instance: its number, from 1. [sim]
+  std::int32_t make_behavior(std::int32_t file, NodeId id);
+  BehaviorFault start_behavior(std::int32_t number);
+  BehaviorFault step_behavior(std::int32_t number, double dt);
+  BehaviorFault restore_behavior(std::int32_t number, std::string_view state, bool migrate);
+  Result<std::string> behavior_state(std::int32_t number);
+  void drop_behavior(std::int32_t number);
   /// Every name that a scene sees, one a line: globals, library.member, thing.member, thing:method. [sim]
   std::string names();
+  /// Calls of scripts' code, from C++ too: the state's main thread is `state()`. [sim]
+  Guard& guard() { return guard_; }
+  lua_State* state() const { return state_.get(); }
+  VmMode mode() const { return guard_.mode(); }
+  /// Draft to live, once the other Vm has gone or was disarmed; false while it has not.
+  bool arm();
+  void disarm() { guard_.disarm(); }
 
   /// `state` as plain data: text of its own, equal where the data are. [sim]
-  std::string state();
+  std::string state_text();
   /// Before a run beside the show: `state` starts as that text; nothing is compiled until become_live().
   void begin_beside(std::string_view state);
   /// After the run: which keys of `state` it wrote; every handle is told to the context (ScriptContext::things).
@@ -55,19 +79,31 @@ class Vm {
   void keep_entries();
   bool call(int arguments, int results);
   void push_entry(const char* name);
+  bool push_behavior(int functions, std::int32_t number);
+  BehaviorFault guarded_behavior(int arguments, int results);
 
   struct Close {
     void operator()(lua_State* state) const;
   };
   std::unique_ptr<lua_State, Close> state_;
-  int run_ = -1;  // registry references of the prelude's entries
+  Guard guard_;
+  std::optional<Collector> collector_;  // once the prelude is in
+  int entries_ = -1;                    // registry references: the prelude's entries, all and each
+  int run_ = -1;
   int start_ = -1;
   int tick_ = -1;
   int message_ = -1;
   int names_ = -1;
-  int entries_ = -1;             // the table that these are of
-  double used_after_cycle_ = 0;  // kB
-  bool collecting_ = false;
+  int warm_ = -1;
+  int make_behavior_ = -1;
+  int renew_behavior_ = -1;
+  int restore_behavior_ = -1;
+  int behavior_state_ = -1;
+  int drop_behavior_ = -1;
+  int behavior_self_ = -1;  // tables by the number of the instance
+  int behavior_start_ = -1;
+  int behavior_step_ = -1;
+  int behavior_migrate_ = -1;
 };
 
 }  // namespace limber

@@ -13,7 +13,7 @@ void Vm::push_entry(const char* name) {
   lua_remove(L, -2);
 }
 
-std::string Vm::state() {
+std::string Vm::state_text() {
   lua_State* const L = state_.get();
   std::string text;
   push_entry("state");
@@ -28,7 +28,6 @@ std::string Vm::state() {
 
 void Vm::begin_beside(std::string_view state) {
   lua_State* const L = state_.get();
-  luaJIT_setmode(L, 0, LUAJIT_MODE_ENGINE | LUAJIT_MODE_OFF);
   push_entry("give_state");
   lua_pushlstring(L, state.data(), state.size());
   call(1, 0);
@@ -47,7 +46,6 @@ void Vm::take_state(std::string_view state) {
 
 void Vm::become_live(std::optional<double> timers_at) {
   lua_State* const L = state_.get();
-  luaJIT_setmode(L, 0, LUAJIT_MODE_ENGINE | LUAJIT_MODE_ON);
   push_entry("become_live");
   if (timers_at) {
     lua_pushnumber(L, *timers_at);

@@ -8,6 +8,7 @@
 
 #include "base/random.h"
 #include "base/text.h"
+#include "sim/behavior_list.h"
 #include "sim/world.h"
 
 namespace limber {
@@ -63,9 +64,11 @@ Body::Body(World& world, NodeId group, std::string name)
   part_group_ = store().add_group(id_, "part");
   joint_group_ = store().add_group(id_, "joint");
   motor_group_ = store().add_group(id_, "motor");
+  behavior_group_ = store().add_group(id_, "behavior");
 }
 
 Body::~Body() {
+  world_.behaviors().body_gone(*this);
   // joints let go of parts before those go
   motors_.clear();
   joints_.clear();
@@ -80,6 +83,10 @@ Part* Body::find_part(std::string_view name) const { return find_by_name<Part>(s
 Joint* Body::find_joint(std::string_view name) const { return find_by_name<Joint>(store(), joint_group_, name); }
 Motor* Body::find_motor(std::string_view name) const { return find_by_name<Motor>(store(), motor_group_, name); }
 
+Behavior* Body::find_behavior(std::string_view name) const {
+  return find_by_name<Behavior>(store(), behavior_group_, name);
+}
+
 Result<Pose> Body::link_pose(std::string_view name) const {
   if (const Part* part = find_part(name)) return part->pose();
   std::vector<std::string_view> names;
@@ -91,6 +98,16 @@ Result<Pose> Body::link_pose(std::string_view name) const {
     }
   }
   return Error{fmt::format("body '{}' has no link '{}'{}", this->name(), name, name_hint(name, names))};
+}
+
+// before a guarded call changes it
+void Body::keep() {
+  if (world_.undo().active()) world_.undo().keep(*this);
+}
+
+void Body::note_moved() {
+  keep();
+  moved_ = true;
 }
 
 Result<Part*> Body::add_part(std::string name, Shape& shape, double mass, const Pose& pose) {
@@ -120,6 +137,8 @@ Result<Part*> Body::add_part(std::string name, Shape& shape, double mass, const 
     store().tell(part->id(), Part::table().at("restitution"))[0] = 1;
   }
   parts_.push_back(std::move(part));
+  structure_++;
+  world_.undo().made_part(*this);
   return parts_.back().get();
 }
 
@@ -144,9 +163,13 @@ Result<Joint*> Body::add_joint(std::string name, Part& parent, Part& child, Join
   spec.type = type;
   spec.frame_in_parent = parent.pose().inverse() * frame;
   spec.frame_in_child = child.pose().inverse() * frame;
-  store().apply_marks();  // the parts stand where they were put before the joint reads its zero
+  // the parts stand where they were put before the joint reads its zero
+  parent.settle();
+  child.settle();
   joints_.push_back(std::make_unique<Joint>(*this, joint_group_, std::move(name), parent, child, spec));
+  world_.undo().made_joint(*this);
   joints_.back()->read_anew();
+  structure_++;
   return joints_.back().get();
 }
 
@@ -159,6 +182,8 @@ Result<Motor*> Body::add_motor(Joint& joint) {
   if (joint.type() == JointType::fixed) return fault("is fixed and takes no motor");
   motors_.push_back(std::make_unique<Motor>(joint, motor_group_));
   if (joint.spec().mimic) followers_.push_back(motors_.back().get());
+  structure_++;
+  world_.undo().made_motor(*this);
   return motors_.back().get();
 }
 
@@ -173,8 +198,8 @@ void Body::build(const std::shared_ptr<const BodyModel>& model, const BuildOptio
     const LinkModel& link = model->links[i];
     parts_.push_back(
         std::make_unique<Part>(*this, part_group_, link.name, geometries[i], link.inertial.mass, moved * link.start));
+    parts_.back()->settle();
   }
-  store().apply_marks();
   for (const JointModel& m : model->joints) {
     JointSpec spec{m.type, m.frame_in_parent, m.frame_in_child, m.limited, m.lower, m.upper, m.friction, {}};
     if (m.mimic >= 0)
@@ -221,8 +246,12 @@ void Body::build_copy(const Body& source) {
   }
   copy_values(source.id_, id_, table());
   planned_ = source.planned_;
-  store().apply_marks();
-  for (std::size_t i = 0; i < parts_.size(); i++) parts_[i]->stand(source.parts_[i]->stance());
+  // to the bit: what the store tells of a pose has gone through a quaternion
+  for (std::size_t i = 0; i < parts_.size(); i++) {
+    parts_[i]->settle();
+    source.parts_[i]->settle();
+    parts_[i]->stand(source.parts_[i]->stance());
+  }
   for (const auto& from : source.joints_) {
     Part& parent = *find_part(from->parent().name());
     Part& child = *find_part(from->child().name());
@@ -236,12 +265,14 @@ void Body::build_copy(const Body& source) {
     if (joint.spec().mimic) followers_.push_back(motors_.back().get());
     copy_values(from->motor()->id(), motors_.back()->id(), Motor::table());
   }
+  world_.behaviors().copy(source, *this);
 }
 
 Pose Body::pose() const { return parts_.empty() ? planned_ : root()->pose(); }
 
 void Body::set_pose(const Pose& pose) {
   if (parts_.empty()) {
+    keep();
     planned_ = pose;
     return;
   }
@@ -249,7 +280,10 @@ void Body::set_pose(const Pose& pose) {
   for (const auto& part : parts_) part->set_pose(part.get() == root() ? pose : moved * part->pose());
 }
 
-bool Body::enabled() const { return store().values(id_, table().at("enabled"))[0] != 0; }
+bool Body::enabled() const {
+  static const Row& row = table().at("enabled");
+  return store().values(id_, row)[0] != 0;
+}
 
 void Body::set_enabled(bool on) {
   const double value = on ? 1 : 0;
@@ -285,14 +319,16 @@ void Body::effect_self_collision() {
 }
 
 void Body::reset() {
+  keep();
   for (const auto& part : parts_) {
     part->set_pose(part->start_pose());
     part->set_velocity(Vec3(0), Vec3(0));
     part->clear_forces();
   }
   for (const auto& joint : joints_) joint->go_to_start();
+  world_.behaviors().body_reset(*this);
   restored_once_ = false;
-  last_good_.clear();
+  good_poses_ = 0;
   set_enabled(true);
 }
 
@@ -306,15 +342,14 @@ void Body::settle_joints() {
   for (const auto& joint : joints_) joint->read_anew();
 }
 
-void Body::push_forces() {
+void Body::follow_leaders() {
   for (Motor* motor : followers_) motor->follow();
-  if (!std::exchange(forced_, false)) return;
-  for (const auto& part : parts_) part->push_forces();
 }
 
 void Body::take_good_pose() {
   last_good_.resize(parts_.size());
   for (std::size_t i = 0; i < parts_.size(); i++) last_good_[i] = parts_[i]->pose();
+  good_poses_ = parts_.size();
 }
 
 void Body::tell() {
@@ -351,6 +386,7 @@ std::uint64_t Body::state_hash(std::uint64_t hash) const {
     mix_kept(joint->id(), Joint::table());
   }
   for (const auto& motor : motors_) mix_kept(motor->id(), Motor::table());
+  for (const Behavior* behavior : behaviors_) hash = behavior->state_hash(hash);
   return hash;
 }
 

@@ -1,6 +1,7 @@
 // Body: a named tree of parts, joints and motors; made by hand, from a model, or as a copy. [sim]
 #pragma once
 
+#include <cstdint>
 #include <memory>
 #include <span>
 #include <string>
@@ -8,6 +9,7 @@
 
 #include "model/body_model.h"
 #include "params/store.h"
+#include "sim/behavior.h"
 #include "sim/joint.h"
 #include "sim/motor.h"
 #include "sim/part.h"
@@ -40,10 +42,13 @@ class Body {
   std::span<const std::unique_ptr<Part>> parts() const { return parts_; }
   std::span<const std::unique_ptr<Joint>> joints() const { return joints_; }
   std::span<const std::unique_ptr<Motor>> motors() const { return motors_; }
+  /// In the order in which they were made; the world's list (sim/behavior_list.h) makes and removes them.
+  std::span<Behavior* const> behaviors() const { return behaviors_; }
   Part* root() const { return parts_.empty() ? nullptr : parts_.front().get(); }
   Part* find_part(std::string_view name) const;
   Joint* find_joint(std::string_view name) const;
   Motor* find_motor(std::string_view name) const;
+  Behavior* find_behavior(std::string_view name) const;
   /// The model it was imported from, or null; carries the merged links' frames.
   const std::shared_ptr<const BodyModel>& model() const { return model_; }
   /// World pose of a link by name, merged ones included.
@@ -79,11 +84,10 @@ class Body {
   void move_tree(std::size_t first, const Pose& pose);
 
   /// A part's pose was set by hand: joints read it anew before the next step.
-  void note_moved() { moved_ = true; }
-  /// A force or impulse waits in a part for the next step.
-  void note_force() { forced_ = true; }
+  void note_moved();
 
-  void push_forces();
+  /// Before Bullet steps: followers' targets from their leaders.
+  void follow_leaders();
   void tell();
   /// The present pose is what health goes back to.
   void take_good_pose();
@@ -91,6 +95,10 @@ class Body {
 
  private:
   friend class World;
+  friend class Behavior;
+  friend class BehaviorList;
+  friend class WorldUndo;
+  void keep();
   void build(const std::shared_ptr<const BodyModel>& model, const BuildOptions& options);
   void build_motor(Joint& joint, const JointModel& m, bool servo);
   void build_copy(const Body& source);
@@ -111,22 +119,25 @@ class Body {
 
   World& world_;
   NodeId id_;
-  NodeId part_group_, joint_group_, motor_group_;
+  NodeId part_group_, joint_group_, motor_group_, behavior_group_;
   std::shared_ptr<const BodyModel> model_;
   std::vector<std::unique_ptr<Part>> parts_;
   std::vector<std::unique_ptr<Joint>> joints_;
   std::vector<std::unique_ptr<Motor>> motors_;
   std::vector<Motor*> followers_;
-  Pose planned_;  // while there is no part
+  std::vector<Behavior*> behaviors_;
+  std::uint32_t structure_ = 0;  // counts what is added: behaviours then look for their targets anew
+  Pose planned_;                 // while there is no part
   bool in_world_ = true;
   std::size_t entered_parts_ = 0;  // the first so many are in Bullet's world
   std::size_t entered_joints_ = 0;
   bool moved_ = false;
-  bool forced_ = false;
   bool fresh_ = true;  // made since the last step: where it is then is its start pose
 
   // health: the pose after the last good tick, and whether it was needed already
   std::vector<Pose> last_good_;
+  std::size_t good_poses_ = 0;  // so many of them count
+  std::uint64_t kept_in_ = 0;   // the guarded call whose undo knows this body
   bool restored_once_ = false;
   bool broken_ = false;  // healed in this tick
 };

@@ -1,9 +1,9 @@
 // Bullet's profile zones as a handful of phases: the outermost zone that has a phase counts.
 #include "sim/bullet_phases.h"
 
-#include <chrono>
 #include <string_view>
 
+#include "base/clock_seconds.h"
 #include "sim/bullet.h"
 
 namespace limber {
@@ -25,10 +25,6 @@ constexpr Zone kZones[] = {{"updateAabbs", &BulletPhases::broadphase},
                            {"createPredictiveContacts", &BulletPhases::motion},
                            {"integrateTransforms", &BulletPhases::motion}};
 
-double seconds_now() {
-  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
-}
-
 // Bullet's hooks are bare functions
 struct Counting {
   BulletPhases phases;
@@ -46,14 +42,14 @@ void enter(const char* name) {
     if (zone.name != name) continue;
     counting.from = counting.level;
     counting.phase = zone.phase;
-    counting.start = seconds_now();
+    counting.start = clock_seconds();
     return;
   }
 }
 
 void leave() {
   if (counting.level == counting.from) {
-    counting.phases.*counting.phase += seconds_now() - counting.start;
+    counting.phases.*counting.phase += clock_seconds() - counting.start;
     counting.from = 0;
   }
   counting.level--;

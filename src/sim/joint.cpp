@@ -185,7 +185,11 @@ void Joint::read_anew() {
 
 void Joint::take_start() { start_angles_ = constraint_->angles(); }
 
-void Joint::go_to_start() { put(body_.store().live_block(id_) + live_rows().angles->offset, start_angles_); }
+void Joint::go_to_start() {
+  Store& store = body_.store();
+  store.keep(id_, *live_rows().angles);
+  put(store.live_block(id_) + live_rows().angles->offset, start_angles_);
+}
 
 void Joint::tell() {
   double* live = body_.store().live_block(id_);

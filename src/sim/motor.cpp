@@ -1,6 +1,7 @@
 // Motor: its rows, and what of them is in force on each axis.
 #include "sim/motor.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <utility>
@@ -164,6 +165,29 @@ void Motor::set_target(double target) {
   const AxisRows& rows = axis_rows();
   set_own(*rows.servo_position[0], *rows.servo_position[1], target);
   set_own(*rows.rest[0], *rows.rest[1], target);
+}
+
+void Motor::lead_to(const Vec3& target, double most) {
+  Store& store = joint_.body().store();
+  const AxisRows& rows = axis_rows();
+  const Vec3 now = joint_.constraint().angles();
+  for (const MotorMode by : {MotorMode::servo, MotorMode::spring}) {
+    const Row& row = by == MotorMode::servo ? *rows.servo_position[1] : *rows.rest[1];
+    std::array<double, 3> values{};
+    store.get(id_, row, values.data());
+    bool any = false;
+    for (int axis = 0; axis < 3; axis++) {
+      if (mode(3 + axis) != by) continue;
+      double way = target[axis] - now[axis];
+      if (joint_.constraint().axis(3 + axis).free()) {
+        way = std::remainder(way, 2 * kPi);
+        if (way <= -kPi) way = kPi;
+      }
+      values[static_cast<std::size_t>(axis)] = now[axis] + std::clamp(way, -most, most);
+      any = true;
+    }
+    if (any) (void)store.set(id_, row, values);
+  }
 }
 
 void Motor::follow() {

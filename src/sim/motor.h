@@ -30,6 +30,10 @@ class Motor {
   /// Servo position and spring rest of the own axis, through the door.
   void set_target(double target);
 
+  /// Sets each angular axis that is a servo or spring, through the door, on the way from where the joint is to `target`
+  /// (rad, the joint's own order), at most `most` ahead; on a free axis the shorter way round.
+  void lead_to(const Vec3& target, double most);
+
   /// Before Bullet steps: a follower's target from its leader.
   void follow();
   /// A spring of it was held below its stiffness: said once, with the cure.

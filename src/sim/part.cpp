@@ -83,6 +83,7 @@ Part::Part(Body& body, NodeId group, std::string name, std::shared_ptr<const Geo
            const Pose& pose)
     : body_(body),
       id_(body.store().add(table(), group, std::move(name), this)),
+      load_(body.world().loads().add(*this)),
       geometry_(std::move(geometry)),
       start_(pose),
       is_static_(mass <= 0) {
@@ -102,6 +103,7 @@ Part::~Part() {
   if (reports_contacts()) world.contact_log().part_reports(false);
   world.contact_log().forget(*this);
   leave();
+  world.loads().remove(load_);
   body_.store().remove(id_);
 }
 
@@ -122,11 +124,18 @@ Pose Part::pose() const {
 
 Vec3 Part::center() const { return pose() * geometry_->frame.position; }
 
+double Part::mass() const {
+  static const Row& row = table().at("mass");
+  return body_.store().values(id_, row)[0];
+}
+
 Vec3 Part::linear_velocity() const { return vec_at(body_.store().values(id_, *live_rows().linear_velocity)); }
 Vec3 Part::angular_velocity() const { return vec_at(body_.store().values(id_, *live_rows().angular_velocity)); }
 
 void Part::set_pose(const Pose& pose) {
   Store& store = body_.store();
+  store.keep(id_, *live_rows().position);
+  store.keep(id_, *live_rows().rotation);
   put(store.tell(id_, *live_rows().position), pose.position);
   put(store.tell(id_, *live_rows().rotation), pose.rotation);
   store.mark(id_, *live_rows().position);
@@ -134,6 +143,8 @@ void Part::set_pose(const Pose& pose) {
 
 void Part::set_velocity(const Vec3& linear, const Vec3& angular) {
   Store& store = body_.store();
+  store.keep(id_, *live_rows().linear_velocity);
+  store.keep(id_, *live_rows().angular_velocity);
   put(store.tell(id_, *live_rows().linear_velocity), linear);
   put(store.tell(id_, *live_rows().angular_velocity), angular);
   store.mark(id_, *live_rows().linear_velocity);
@@ -162,43 +173,57 @@ void Part::stand(const Stance& stance) {
   rigid_->updateInertiaTensor();
 }
 
+void Part::keep() {
+  WorldUndo& undo = body_.world().undo();
+  if (undo.active()) undo.keep(*this);
+}
+
+void Part::settle() {
+  WorldUndo& undo = body_.world().undo();
+  if (!undo.active()) return body_.store().apply_marks();
+  undo.keep_motion(*this);
+  body_.store().apply_marks(id_);
+}
+
 void Part::apply_force(const Vec3& force) {
-  force_ += force;
-  body_.note_force();
+  keep();
+  body_.world().loads().load(load_).force += force;
 }
 
 void Part::apply_torque(const Vec3& torque) {
-  torque_ += torque;
-  body_.note_force();
+  keep();
+  body_.world().loads().load(load_).torque += torque;
 }
 
 void Part::apply_impulse(const Vec3& impulse) {
-  impulse_ += impulse;
-  body_.note_force();
+  keep();
+  body_.world().loads().kick(load_).impulse += impulse;
 }
 
 void Part::apply_force_at(const Vec3& force, const Vec3& at) {
   apply_force(force);
-  torque_ += glm::cross(at - center(), force);
+  apply_torque(glm::cross(at - center(), force));
 }
 
 void Part::apply_impulse_at(const Vec3& impulse, const Vec3& at) {
   apply_impulse(impulse);
-  angular_impulse_ += glm::cross(at - center(), impulse);
+  body_.world().loads().kick(load_).angular_impulse += glm::cross(at - center(), impulse);
 }
 
-void Part::clear_forces() { force_ = torque_ = impulse_ = angular_impulse_ = Vec3(0); }
+void Part::clear_forces() {
+  keep();
+  body_.world().loads().clear(load_);
+}
 
-void Part::push_forces() {
-  if (is_static_) return clear_forces();
+void Part::push(const PartLoads::Load& load, const PartLoads::Kick& kick) {
+  if (is_static_ || !rigid_->isInWorld()) return;
   // more than any part stands, but a number still: what is none would spread to all that the part touches
   const Vec3 most(1e15);
   const auto tamed = [&](const Vec3& v) { return to_bt(glm::clamp(v, -most, most)); };
-  rigid_->applyCentralForce(tamed(force_));
-  rigid_->applyTorque(tamed(torque_));
-  rigid_->applyCentralImpulse(tamed(impulse_));
-  rigid_->applyTorqueImpulse(tamed(angular_impulse_));
-  clear_forces();
+  rigid_->applyCentralForce(tamed(load.force));
+  rigid_->applyTorque(tamed(load.torque));
+  rigid_->applyCentralImpulse(tamed(kick.impulse));
+  rigid_->applyTorqueImpulse(tamed(kick.angular_impulse));
 }
 
 void Part::tell() {

@@ -1,11 +1,13 @@
 // Part: one rigid piece of a body. Users see its link frame; Bullet moves its centre-of-mass frame. [sim]
 #pragma once
 
+#include <cstdint>
 #include <memory>
 #include <string>
 
 #include "params/store.h"
 #include "sim/geometry.h"
+#include "sim/part_loads.h"
 
 namespace limber {
 
@@ -38,6 +40,10 @@ class Part {
   /// Link frame as the store has it: as told after the last tick, or as set since.
   Pose pose() const;
   Vec3 center() const;
+  /// kg; 0: static.
+  double mass() const;
+  /// About which its principal moments (geometry's, times the mass) are, world.
+  Quat principal_axes() const { return pose().rotation * geometry_->frame.rotation; }
   Vec3 linear_velocity() const;
   Vec3 angular_velocity() const;
   void set_pose(const Pose& pose);
@@ -62,13 +68,19 @@ class Part {
   void apply_impulse(const Vec3& impulse);
   void apply_impulse_at(const Vec3& impulse, const Vec3& at);
   void clear_forces();
+  /// Before the forces that wait are changed, or its speed by a guarded call: lets the world's undo know them.
+  void keep();
+  /// Brings what was set into Bullet now, ahead of the next step.
+  void settle();
 
   /// Into Bullet's world and out of it; the body says when.
   void enter();
   void leave();
 
-  /// Before Bullet steps: hands the collected forces and impulses over.
-  void push_forces();
+  /// Before Bullet steps: takes what waited for it.
+  void push(const PartLoads::Load& load, const PartLoads::Kick& kick);
+  /// Its place in World::loads().
+  std::uint32_t load_place() const { return load_; }
   /// After Bullet stepped: poses and velocities into the live block.
   void tell();
   bool reports_contacts() const;
@@ -88,13 +100,15 @@ class Part {
   Result<void> act_impulse(std::span<const double> args);
   Result<void> act_torque(std::span<const double> args);
 
+  friend class WorldUndo;
   Body& body_;
   NodeId id_;
   NodeId shape_;
+  std::uint32_t load_;  // its place among the world's loads
   std::shared_ptr<const Geometry> geometry_;
   std::unique_ptr<btRigidBody> rigid_;
   Pose start_;
-  Vec3 force_{0}, torque_{0}, impulse_{0}, angular_impulse_{0};
+  std::uint64_t kept_in_ = 0;  // the guarded call whose undo knows its forces
   bool is_static_ = false;
   bool reports_ = false;
 };

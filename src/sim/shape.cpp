@@ -1,6 +1,8 @@
 // Shapes: what they need to be possible, compounds, their geometry.
 #include "sim/shape.h"
 
+#include <algorithm>
+
 #include <fmt/format.h>
 
 #include "sim/geometry.h"
@@ -75,6 +77,11 @@ Result<void> Shape::add_child(const Shape& child, const Pose& origin) {
   }
   geometry_ = nullptr;
   return {};
+}
+
+void Shape::keep_children(std::size_t count) {
+  children_.resize(std::min(count, children_.size()));
+  geometry_ = nullptr;
 }
 
 std::vector<PlacedShape> Shape::placed() const {

@@ -29,6 +29,9 @@ class Shape {
   Result<void> add_child(const Shape& child, const Pose& origin);
   /// The shape's geometries in its own frame: itself, or a compound's children.
   std::vector<PlacedShape> placed() const;
+  std::size_t child_count() const { return children_.size(); }
+  /// Takes the last children away again: what a guarded call that failed had added.
+  void keep_children(std::size_t count);
   const std::vector<PlacedShape>& children() const { return children_; }
   /// Takes the geometry of another shape, of another world perhaps. Parts made before are not changed.
   void become(const Shape& other);

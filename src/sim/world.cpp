@@ -2,10 +2,10 @@
 #include "sim/world.h"
 
 #include <algorithm>
-#include <chrono>
 
 #include <fmt/format.h>
 
+#include "base/clock_seconds.h"
 #include "base/log.h"
 #include "base/random.h"
 #include "base/text.h"
@@ -20,10 +20,6 @@ using namespace rows;
 constexpr double kMaxSpeed = 500;
 constexpr double kMaxSpin = 1000;
 constexpr double kMaxDistance = 1e4;
-
-double seconds_now() {
-  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
-}
 
 struct WorldRows {
   const Row *gravity, *timestep, *substeps, *iterations, *seed, *time, *tick;
@@ -50,7 +46,7 @@ const Table& World::table() {
                                                 "Rounds of the contact and joint solver in each internal step.")),
           choice("solver", {"iterative"}, 0, "How joints and contacts are solved."),
           live(state(integer("seed", 1, 0, 9007199254740992,
-                             "What every random draw derives from; counts from the next start."))),
+                             "What every random draw derives from: a behaviour's at once, a scene's from the next start."))),
           live(state(boolean("paused", false, "Time stands still; commands and OSC are still answered."))),
           live(state(number("speed", "× real time", 1, 0.01, 100, "How fast simulated time runs when it is paced."))),
           live(readout(number("time", "s", 0, 0, kUnbounded, "Simulated time."))),
@@ -64,6 +60,7 @@ World::World(Store& store, const WorldSetup& setup) : store_(store), bullet_(std
   const NodeId physics = store_.add_group(store_.root(), "physics");
   id_ = store_.add(table(), physics, "sim", this);
   body_group_ = store_.add_group(physics, "body");
+  behaviors_ = std::make_unique<BehaviorList>(*this, physics);
   const NodeId visuals = store_.add_group(store_.root(), "visuals");
   shape_group_ = store_.add_group(visuals, "shape");
   bullet_->setInternalTickCallback(&World::after_internal_step, this, false);
@@ -72,6 +69,7 @@ World::World(Store& store, const WorldSetup& setup) : store_(store), bullet_(std
 World::~World() { clear(); }
 
 void World::clear() {
+  behaviors_->clear();
   bodies_.clear();
   shapes_.clear();
   geometries_.clear();
@@ -95,6 +93,7 @@ Result<void> World::name_is_free(NodeId group, std::string_view kind, std::strin
 Result<Body*> World::add_body(std::string name) {
   if (const Result<void> free = name_is_free(body_group_, "body", name); !free) return Error{free.error()};
   bodies_.push_back(std::make_unique<Body>(*this, body_group_, std::move(name)));
+  undo_.made_body();
   return bodies_.back().get();
 }
 
@@ -112,7 +111,10 @@ Result<Body*> World::copy_body(const Body& source, std::string name) {
 }
 
 void World::remove_body(Body& body) {
-  std::erase_if(bodies_, [&](const std::unique_ptr<Body>& b) { return b.get() == &body; });
+  const auto at = std::ranges::find_if(bodies_, [&](const std::unique_ptr<Body>& b) { return b.get() == &body; });
+  if (at == bodies_.end()) return;
+  if (undo_.active()) undo_.hide(std::move(*at), static_cast<std::size_t>(at - bodies_.begin()));
+  bodies_.erase(at);
 }
 
 Body* World::find_body(std::string_view name) const {
@@ -132,6 +134,7 @@ Result<Shape*> World::add_shape(std::string name, ShapeModel model) {
     return Error{fmt::format("shape '{}': {}", name, possible.error())};
   }
   shapes_.push_back(std::make_unique<Shape>(store_, shape_group_, std::move(name), std::move(model)));
+  undo_.made_shape();
   return shapes_.back().get();
 }
 
@@ -177,17 +180,20 @@ void World::settle() {
 }
 
 void World::step() {
-  const double start = seconds_now();
+  const double begin = clock_seconds();
+  behaviors_->step(timestep());
+  const double start = clock_seconds();
   settle();
   for (const auto& body : bodies_) {
     if (std::exchange(body->fresh_, false)) body->take_start_pose();
-    if (body->in_world()) body->push_forces();
+    if (body->in_world()) body->follow_leaders();
   }
+  loads_.push();
   contacts_.begin_tick();
-  const double before = seconds_now();
+  const double before = clock_seconds();
   const int substeps = static_cast<int>(store_.values(id_, *world_rows().substeps)[0]);
   bullet_->step(timestep() / substeps, substeps);
-  const double after = seconds_now();
+  const double after = clock_seconds();
   contacts_.end_tick();
   tick_++;
   store_.tell(id_, *world_rows().time)[0] += timestep();
@@ -198,7 +204,7 @@ void World::step() {
     if (!body->broken_) body->take_good_pose();
   }
   if (std::exchange(healed_, false)) settle_healed();
-  times_ = {before - start, after - before, seconds_now() - after};
+  times_ = {start - begin, before - start, after - before, clock_seconds() - after};
 }
 
 void World::after_internal_step(btDynamicsWorld* bullet, btScalar) {
@@ -233,7 +239,7 @@ void World::after_internal_step(btDynamicsWorld* bullet, btScalar) {
 void World::heal(Body& body, const Part& part, const char* what) {
   for (std::size_t i = 0; i < body.parts_.size(); i++) {
     Part& each = *body.parts_[i];
-    each.set_pose(i < body.last_good_.size() ? body.last_good_[i] : each.start_pose());
+    each.set_pose(i < body.good_poses_ ? body.last_good_[i] : each.start_pose());
     each.set_velocity(Vec3(0), Vec3(0));
     each.effect_pose();
     each.effect_velocity();
@@ -272,7 +278,7 @@ std::uint64_t World::state_hash() const {
   const double moment[] = {time(), static_cast<double>(tick_), static_cast<double>(seed())};
   hash = hash_bytes({reinterpret_cast<const char*>(moment), sizeof moment}, hash);
   for (const auto& body : bodies_) hash = body->state_hash(hash);
-  return hash;
+  return behaviors_->state_hash(hash);
 }
 
 }  // namespace limber

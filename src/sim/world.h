@@ -10,15 +10,18 @@
 #include <vector>
 
 #include "params/store.h"
+#include "sim/behavior_list.h"
 #include "sim/body.h"
 #include "sim/contacts.h"
 #include "sim/island_world.h"
 #include "sim/shape.h"
+#include "sim/world_undo.h"
 
 namespace limber {
 
 /// Where the tick's time went, seconds of the last tick.
 struct TickTimes {
+  double behaviors = 0;
   double effects = 0;
   double physics = 0;
   double readouts = 0;
@@ -42,6 +45,7 @@ class World {
   /// At the same place, with all values; of a body of this world or of another. Placed (set_pose) before the next step,
   /// it never collides with its original.
   Result<Body*> copy_body(const Body& source, std::string name);
+  /// In a guarded call it is out of sight at once, and goes when the call has ended well.
   /// Puts a body like `described` (of another world) in the place of `body`: where that is, with its joints' positions
   /// and speeds, where the two have the same. What is the same stays to the bit. The start pose is the described one.
   Body& rebuild_body(Body& body, const Body& described, const std::vector<bool>& joints_start_anew);
@@ -60,13 +64,15 @@ class World {
   /// Brings bodies, shapes into this order; those that are not named stand behind, as they stood.
   void order_bodies(const std::vector<Body*>& first);
   void order_shapes(const std::vector<Shape*>& first);
+  BehaviorList& behaviors() { return *behaviors_; }
+  const BehaviorList& behaviors() const { return *behaviors_; }
 
   double time() const;
   std::uint64_t tick() const { return tick_; }
   double timestep() const;
   std::uint64_t seed() const;
 
-  /// One tick: effects of what was set, `substeps` internal steps, readouts, contacts, health.
+  /// One tick: behaviours, effects of what was set, `substeps` internal steps, readouts, contacts, health.
   void step();
   /// Effects and readouts without time passing: while paused, and before the first tick.
   void settle();
@@ -74,7 +80,7 @@ class World {
   void ask_reset() { reset_asked_ = true; }
   /// Whether sim:reset or /transport/reset asked for a reset since the last call.
   bool take_reset_request() { return std::exchange(reset_asked_, false); }
-  /// Removes every body and shape; the world's own rows return to their defaults.
+  /// Removes every behaviour, body and shape; the world's own rows return to their defaults.
   void clear();
   /// Effects without entering Bullet's world: for one that is only described, never stepped.
   void stand();
@@ -92,11 +98,15 @@ class World {
   /// One a link, built once a model and shared by all its bodies.
   const std::vector<std::shared_ptr<const Geometry>>& geometries_of(const std::shared_ptr<const BodyModel>& model);
 
+  PartLoads& loads() { return loads_; }
   IslandWorld& bullet() { return *bullet_; }
   Contacts& contact_log() { return contacts_; }
+  /// What takes a guarded call of a script back.
+  WorldUndo& undo() { return undo_; }
 
  private:
   friend class Body;
+  friend class WorldUndo;
   void effect_gravity();
   void effect_solver();
   void settle_healed();
@@ -108,14 +118,17 @@ class World {
   Store& store_;
   NodeId id_, body_group_, shape_group_;
   std::unique_ptr<IslandWorld> bullet_;
+  PartLoads loads_;
   std::vector<std::unique_ptr<Shape>> shapes_;
   std::vector<std::unique_ptr<Body>> bodies_;
+  std::unique_ptr<BehaviorList> behaviors_;
   struct ModelGeometry {
     std::shared_ptr<const BodyModel> model;  // keeps the key's address from being used again
     std::vector<std::shared_ptr<const Geometry>> links;
   };
   std::unordered_map<const BodyModel*, ModelGeometry> geometries_;
   Contacts contacts_;
+  WorldUndo undo_{*this};
   TickTimes times_;
   std::uint64_t tick_ = 0;
   std::uint64_t health_events_ = 0;

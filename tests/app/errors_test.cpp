@@ -82,7 +82,17 @@ void write_inputs(const Folder& folder) {
   folder.file("typo.lua", "sim.gravty = vec3(0, 0, 0)\n");
   folder.file("erring.lua", "sim:on_step(function() error('oh') end)\n");
   folder.file("endless.lua", "while true do end\n");
-  folder.file("stuck.lua", "sim:on_step(function() warn('round and round') while true do end end)\n");
+  folder.file("heavy.lua",
+              "sim.substeps, sim.solver_iterations = 1000, 10000\n"
+              "local ball = sim:add_sphere_shape('ball', 0.1)\n"
+              "local chain = sim:add_body('chain')\n"
+              "local before = chain:add_part('0', ball, { mass = 0 })\n"
+              "for i = 1, 300 do\n"
+              "  local part = chain:add_part(tostring(i), ball, { position = vec3(i, 0, 0) })\n"
+              "  chain:add_joint(tostring(i), before, part, { position = vec3(i - 0.5, 0, 0), axis = vec3(0, 1, 0) })\n"
+              "  before = part\n"
+              "end\n"
+              "sim:on_step(function() warn('round and round') end)\n");
   folder.file("broken.urdf", "<robot name='r'><link name='a'>");
 }
 
@@ -108,6 +118,11 @@ std::vector<std::string> words_of(const std::string& input) {
 }
 
 Ran run_input(const std::string& input) {
+  // "in FOLDER ARGUMENTS" is called there
+  if (input.starts_with("in ")) {
+    const std::size_t blank = input.find(' ', 3);
+    return run(words_of(input.substr(blank + 1)), input.substr(3, blank - 3));
+  }
   // "^C when TEXT: ARGUMENTS" is somebody's Ctrl+C, twice, once that text was said
   if (!input.starts_with("^C when ")) return run(words_of(input));
   const std::size_t colon = input.find(": ");

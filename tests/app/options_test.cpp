@@ -8,15 +8,15 @@ TEST(Options, HelpTeaches) {
   const Ran ran = run({"--help"});
   EXPECT_EQ(ran.code, 0);
   EXPECT_EQ(ran.err, "");
-  for (const char* taught :
-       {"scripts/arms.lua", "oscsend", "--fast --duration 10 --hash", "play", "inspect", "describe", "bench", "doctor",
-        "Exit codes: 0 fine; 1 the input is at fault; 2 wrong usage; 3"}) {
+  for (const char* taught : {"scripts/arms.lua", "oscsend", "--fast --duration 10 --hash", "play", "inspect",
+                             "describe", "bench", "doctor", "console", "annotate", "limber new show",
+                             "console -e sim.time", "Exit codes: 0 fine; 1 the input is at fault; 2 wrong usage; 3"}) {
     EXPECT_NE(ran.out.find(taught), std::string::npos) << taught;
   }
 }
 
 TEST(Options, EachCommandHasHelp) {
-  for (const char* command : {"play", "inspect", "describe", "bench", "doctor"}) {
+  for (const char* command : {"play", "console", "new", "inspect", "describe", "bench", "annotate", "doctor"}) {
     const Ran ran = run({command, "--help"});
     EXPECT_EQ(ran.code, 0) << command;
     EXPECT_NE(ran.out.find("--help"), std::string::npos) << command;

@@ -16,6 +16,7 @@ TEST(Files, OpenWithACommentAndStayShort) {
   std::size_t seen = 0;
   for (const char* folder : {"src", "tests", "scripts", "behaviors_lua"}) {
     for (const SourceFile& file : source_files(folder, {".h", ".hpp", ".cpp", ".inc", ".lua", ".cmake"})) {
+      if (file.path.starts_with("scripts/library/")) continue;  // made by the program
       for (const std::string& complaint : shape_complaints(file.path, file.text)) ADD_FAILURE() << complaint;
       ++seen;
     }

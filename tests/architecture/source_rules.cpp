@@ -26,10 +26,11 @@ constexpr std::array kRooms{
     Room{"engine", "params model sim behaviors script"},
     // the outside sees commands, snapshots and the catalog, nothing live
     Room{"osc", "params model engine"},
+    Room{"console", "params model engine"},
     Room{"query", "params model engine"},
     Room{"view", "params model engine"},
     Room{"gui", "params model engine"},
-    Room{"app", "params model sim behaviors script engine osc query view gui"},
+    Room{"app", "params model sim behaviors script engine osc console query view gui"},
 };
 
 /// An outside library, by how its headers begin, and the room that may include it ("" : every room).
@@ -58,6 +59,7 @@ constexpr std::array kLibraries{
     Library{"imgui", "gui"},
     Library{"GLFW/", "app"},
     Library{"CLI/", "app"},
+    Library{"histedit.h", "app"},
     Library{"spdlog/", "base"},
     Library{"fmt/", ""},
     Library{"glm/", ""},

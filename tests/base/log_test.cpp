@@ -71,6 +71,22 @@ TEST_F(Log, SaysTheLevelOnStderrUnlessSilenced) {
   EXPECT_EQ(testing::internal::GetCapturedStderr(), "limber: plain\nlimber: warning: careful\nlimber: error: broken\n");
 }
 
+TEST_F(Log, KeepsWhatScriptsPrintButSaysItNowhere) {
+  const std::uint64_t seen = log_newest();
+  EXPECT_EQ(seen, newest());
+  log_to_stderr(true);
+  testing::internal::CaptureStderr();
+  log_line(LogLevel::print, "a script's");
+  log_line(LogLevel::print, std::string(1000000, 'x'));
+  EXPECT_EQ(testing::internal::GetCapturedStderr(), "");
+  const std::vector<LogLine> lines = log_since(seen);
+  ASSERT_EQ(lines.size(), 2u);
+  EXPECT_EQ(lines[0].text, "a script's");
+  EXPECT_EQ(lines[0].level, LogLevel::print);
+  EXPECT_EQ(lines[1].text.size(), 4096u) << "a thousand long ones must not fill the memory";
+  EXPECT_EQ(log_newest(), seen + 2);
+}
+
 TEST_F(Log, TakesLinesFromAnyThread) {
   const std::uint64_t seen = newest();
   std::vector<std::thread> threads;

@@ -6,6 +6,7 @@
 #include <cstdlib>
 #include <new>
 
+#include "engine/behaviors.h"
 #include "engine/show.h"
 
 namespace {
@@ -66,6 +67,12 @@ sim:on_step(function(dt) part:apply_force(vec3(0, 0, 9.81)) end)
 )");
   Show show(scene.path());
   EXPECT_EQ(during(show, 200), 0U);
+}
+
+TEST(EngineAllocation, NoneWithEveryTypeOfBehaviour) {
+  const SceneFile scene(kEveryBehavior);
+  Show show(scene.path());
+  EXPECT_EQ(during(show, 300), 0U);
 }
 
 TEST(EngineAllocation, AValueComingInTakesNoneBeyondItsMessage) {

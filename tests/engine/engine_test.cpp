@@ -309,6 +309,26 @@ TEST(Engine, RunsForTicksOrATime) {
   EXPECT_EQ(paced.engine.state_hash(), by_ticks.engine.state_hash()) << "the clock is no part of the result";
 }
 
+TEST(Engine, AnEndlessCallbackIsStoppedAndTold) {
+  // the ball falls as it would alone: after n steps of 0.1 s at 10 m/s² by 0.05 · n · (n + 1)
+  const SceneFile scene(std::string(kBall) + "sim:on_step(function() sim.gravity = vec3() while true do end end)\n");
+  EngineOptions options = fast_options(scene.path());
+  options.scene_options.limits.call_ms = 5 * kBudgetScale;
+  Show show(options);
+  show.ticks(10);
+  EXPECT_NEAR(show.read("/physics/body/ball/position", 2), 100 - 0.05 * 10 * 11, 1e-3);
+  std::vector<Outgoing> out;
+  show.link.outbox.drain(out);
+  std::erase_if(out, [](const Outgoing& o) { return o.message.address != "/script/error"; });
+  ASSERT_EQ(out.size(), 1u);
+  EXPECT_EQ(out[0].message.args.at(0).text, "scene.lua");
+  EXPECT_EQ(show.engine.faults(), 1u);
+  // a reset makes a new Lua state while the old one is there; it is stopped as well
+  show.send("/transport/reset");
+  show.ticks(2);
+  EXPECT_EQ(show.engine.faults(), 2u);
+}
+
 TEST(Engine, StrictEndsAtTheFirstFault) {
   EngineOptions options = fast_options();
   options.strict = true;

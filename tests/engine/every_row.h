@@ -30,6 +30,14 @@ inline std::vector<Sample> samples(const Store& store) {
       {&Part::table(), arm + "/part/part_revolute", {"arm", "part_revolute"}, "sim:body('arm'):part('part_revolute')"},
       {&Joint::table(), arm + "/joint/revolute", {"arm", "revolute"}, "sim:body('arm'):joint('revolute')"},
       {&Motor::table(), arm + "/motor/revolute", {"arm", "revolute"}, "sim:body('arm'):motor('revolute')"},
+      {&store.table(find_place(store, arm + "/behavior/wind").value().node),
+       arm + "/behavior/wind",
+       {},
+       "sim:body('arm'):behavior('wind')"},
+      {&store.table(find_place(store, "/physics/group/swarm").value().node),
+       "/physics/group/swarm",
+       {},
+       "sim:group_behavior('swarm')"},
       {&store.table(find_place(store, "/scene").value().node), "/scene", {}, "params"},
   };
 }

@@ -17,8 +17,10 @@ for i, kind in ipairs { "revolute", "prismatic", "spherical", "planar", "floatin
 end
 body:add_part("hat", shape, { position = vec3(2, 0, 1) })
 body:add_joint("weld", "part_floating", "hat", { type = "fixed" })
+body:add_behavior("random_force", "wind", { parts = "hat" })
 sim:add_body("free"):add_part("free", shape, { position = vec3(0, 4, 2) })
 body:copy("twin", { position = vec3(0, 2, 1) })
+sim:add_group_behavior("cohesion", "swarm", { bodies = { "arm", "twin" } })
 params {
   { "wind", 0, min = 0, max = 10, unit = "N", doc = "A number." },
   { "where", vec3(0, 0, 1), min = -1, max = 2, doc = "A vec3." },

@@ -1,41 +1,13 @@
 // The scenes that come with Limber do what their first lines say.
 #include <algorithm>
 #include <cmath>
-#include <memory>
 #include <string>
 #include <vector>
 
-#include <gtest/gtest.h>
-
-#include "base/log.h"
-#include "engine/engine.h"
+#include "player.h"
 
 namespace limber {
 namespace {
-
-struct Player {
-  explicit Player(const std::string& scene) {
-    log_to_stderr(false);
-    EngineOptions options;
-    options.scene = std::string(LIMBER_SOURCE_DIR) + "/scripts/" + scene;
-    options.scene_options.data_dir = LIMBER_SOURCE_DIR;
-    options.fast = true;
-    engine = std::make_unique<Engine>(link, options);
-    const Result<void> started = engine->start();
-    EXPECT_TRUE(started.ok()) << (started.ok() ? "" : started.error());
-  }
-  ~Player() { log_to_stderr(true); }
-
-  void play(double seconds) {
-    const double end = engine->world().time() + seconds - 1e-9;
-    while (engine->world().time() < end) engine->tick();
-  }
-
-  void send(const std::string& address, std::vector<Arg> args) { link.inbox.push({{{address, std::move(args)}}, {}}); }
-
-  EngineLink link;
-  std::unique_ptr<Engine> engine;
-};
 
 TEST(Scenes, TheQuadrupedStandsThenWalksAMetreInTenSecondsAndNeverFalls) {
   Player player("quadruped.lua");

@@ -142,5 +142,16 @@ TEST(Osc, Mistakes) {
             at + "osc:listen declares something about the scene; write it at the top level");
 }
 
+TEST(Osc, AMessageWithMoreArgumentsThanLuaTakesIsNotHeard) {
+  Stage stage;
+  ASSERT_EQ(stage.play("osc:on('/a', function(...) print(select('#', ...)) end)"), "");
+  EXPECT_TRUE(stage.scene.message({"/a", std::vector<Arg>(4000, Arg::of(1.0))}, {}));
+  EXPECT_FALSE(stage.scene.message({"/a", std::vector<Arg>(60000, Arg::of(1.0))}, {}));
+  EXPECT_TRUE(stage.scene.message({"/a", {Arg::of(1.0)}}, {}));
+  EXPECT_EQ(stage.host.printed, (std::vector<std::string>{"4000", "1"}));
+  ASSERT_EQ(stage.logged().size(), 1u);
+  EXPECT_EQ(stage.logged()[0], "/a: 60000 arguments are more than a script's handler takes (4000)");
+}
+
 }  // namespace
 }  // namespace limber

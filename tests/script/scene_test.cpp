@@ -244,7 +244,7 @@ TEST(Scene, TheSeedDecidesAndTheCommandLineWins) {
   EXPECT_EQ(plain.host.printed.back(),
             value_of("string.format('%.14g', " + std::to_string(0) + " + " + fmt::format("{:.17g}", first) + ")") +
                 "\t" + std::to_string(1 + static_cast<int>(second * 1000)) + "\t7");
-  Stage other{SceneOptions{"", {}, 8}};
+  Stage other{SceneOptions{"", {}, 8, {}}};
   ASSERT_EQ(other.run(draw), "");
   EXPECT_NE(other.host.printed, plain.host.printed);
   EXPECT_EQ(other.host.printed.back().substr(other.host.printed.back().rfind('\t')), "\t8");

@@ -97,7 +97,8 @@ end)
   EXPECT_EQ(stage.host.printed, Lines{"body 'again'"});
   ASSERT_EQ(stage.host.faults.size(), 1u);
   EXPECT_EQ(first_line(stage.host.faults[0].text),
-            "scripts/scene.lua:5: 'urdf/other.urdf' was not loaded when the scene ran; a callback must not wait for a "
+            "scripts/scene.lua:5: 'urdf/other.urdf' was not loaded like this when the scene ran; a callback must not "
+            "wait for a "
             "disk, so load it once at the top level");
 }
 

@@ -17,7 +17,7 @@ ffi.cdef [[
   typedef struct list { const int32_t slot_, generation_, kind_; } list;
   typedef struct link { const int32_t slot_, generation_, number_; } link;
   typedef struct timer { const int32_t number_; } timer;
-  typedef struct rng { const int32_t number_; } rng;
+  typedef struct rng { const int32_t slot_, generation_; } rng;
   typedef struct address { const double ip_; const int32_t port_; } address;
 ]]
 
@@ -25,6 +25,15 @@ local api = ffi.cast("const struct LimberApi*", P.api)
 local ctx = ffi.cast("void*", P.context)
 local answer = api.answer(ctx)
 local getinfo, format, sub, byte, concat = debug.getinfo, string.format, string.sub, string.byte, table.concat
+
+P.entry = {}       -- what C++ calls
+P.on_failure = {}  -- run after a guarded call that failed
+P.metas = {}       -- metatables of cdata by the number of the type
+local metatype = ffi.metatype
+function ffi.metatype(ctype, meta)
+  P.metas[tonumber(ffi.typeof(ctype))] = meta
+  return metatype(ctype, meta)
+end
 
 P.ffi, P.api, P.ctx, P.answer, P.view = ffi, api, ctx, answer, api.view(ctx)
 
@@ -91,14 +100,27 @@ function P.check(code, gone, thing)
   P.fail("%s", P.text())
 end
 
+-- what a behaviour may do only in its functions
+local function fail_in_behavior(what)
+  P.fail("%s acts on the running scene; a behavior acts in its start and step", what)
+end
+
 -- actions change a running world; the top level describes one
 function P.needs_callback(what)
   if answer.top_level ~= 0 then
+    if answer.in_behavior ~= 0 then fail_in_behavior(what) end
     P.fail("%s acts on the running scene; at the top level use sim:on_start(function() … end)", what)
   end
 end
 function P.needs_top_level(what)
   if answer.top_level == 0 then P.fail("%s declares something about the scene; write it at the top level", what) end
+end
+
+-- things and callbacks are the scene's; a behaviour moves what is there
+function P.needs_scene(what)
+  if answer.in_behavior ~= 0 then
+    P.fail("%s makes or registers something: that is the scene's; a behavior moves what is there", what)
+  end
 end
 
 function P.want_function(f, what)

@@ -52,6 +52,12 @@ end
 local function length(v) return sqrt(v.x * v.x + v.y * v.y + v.z * v.z) end
 local function cross(a, b) return V(a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x) end
 
+-- members of values by the name of their kind, for texts that list them
+P.value_members = {
+  vec3 = { x = 1, y = 1, z = 1, length = 1, normalized = 1, dot = 1, cross = 1, lerp = 1 },
+  quat = { x = 1, y = 1, z = 1, w = 1, inverse = 1, slerp = 1 },
+}
+
 local vec3_methods = {}
 function vec3_methods.length(v) return length(want_vec3(v, "vec3:length")) end
 function vec3_methods.normalized(v)
@@ -69,8 +75,7 @@ function vec3_methods.lerp(a, b, t)
   a, b, t = want_vec3(a, "vec3:lerp"), want_vec3(b, "vec3:lerp"), P.want_number(t, "vec3:lerp")
   return V(a.x + (b.x - a.x) * t, a.y + (b.y - a.y) * t, a.z + (b.z - a.z) * t)
 end
-setmetatable(vec3_methods, { __index = unknown_member("vec3", { x = 1, y = 1, z = 1, length = 1, normalized = 1,
-  dot = 1, cross = 1, lerp = 1 }) })
+setmetatable(vec3_methods, { __index = unknown_member("vec3", P.value_members.vec3) })
 
 ffi.metatype(V, {
   __index = vec3_methods,
@@ -138,7 +143,7 @@ function quat_methods.slerp(a, b, t)
   local n = sqrt(x * x + y * y + z * z + w * w)
   return Q(x / n, y / n, z / n, w / n)
 end
-setmetatable(quat_methods, { __index = unknown_member("quat", { x = 1, y = 1, z = 1, w = 1, inverse = 1, slerp = 1 }) })
+setmetatable(quat_methods, { __index = unknown_member("quat", P.value_members.quat) })
 
 local function multiply(p, q)
   return Q(p.w * q.x + p.x * q.w + p.y * q.z - p.z * q.y, p.w * q.y - p.x * q.z + p.y * q.w + p.z * q.x,

@@ -19,13 +19,16 @@ function extra.noise(x, y, z)
   end
   return api.noise(ctx, x, y or 0, z or 0)
 end
-function extra.random(low, high)
-  local u = api.random_uniform(ctx)
-  if low == nil then return u end
-  if high == nil then low, high = 1, low end
-  low, high = math.floor(want_number(low, "math.random")), math.floor(want_number(high, "math.random"))
-  if low > high then fail("math.random: nothing lies between %d and %d", low, high) end
-  return low + math.floor(u * (high - low + 1))
+-- math.random of a file: slot -1 is the scene's, -2 that of behaviour file 0, and so on
+function P.make_random(slot)
+  return function(low, high)
+    local u = api.random_uniform(ctx, slot, 0)
+    if low == nil then return u end
+    if high == nil then low, high = 1, low end
+    low, high = math.floor(want_number(low, "math.random")), math.floor(want_number(high, "math.random"))
+    if low > high then fail("math.random: nothing lies between %d and %d", low, high) end
+    return low + math.floor(u * (high - low + 1))
+  end
 end
 
 -- red, green, blue to hue, saturation, brightness, each 0 .. 1
@@ -42,6 +45,7 @@ function P.rgb(r, g, b)
 end
 
 local R = ffi.typeof("rng")
+P.value_members.rng = { uniform = 1, direction = 1, normal = 1 }
 local methods = {}
 local function check(self, what)
   if not istype(R, self) then fail("rng.%s is a method: write rng:%s(…)", what, what) end
@@ -52,27 +56,27 @@ local function wide(v)
 end
 function methods.uniform(self, a, b)
   check(self, "uniform")
-  if a == nil and b == nil then return api.random_uniform(ctx) end
+  if a == nil and b == nil then return api.random_uniform(ctx, self.slot_, self.generation_) end
   a, b = a or 0, b or 1
-  if type(a) == "number" and type(b) == "number" then return a + (b - a) * api.random_uniform(ctx) end
+  if type(a) == "number" and type(b) == "number" then return a + (b - a) * api.random_uniform(ctx, self.slot_, self.generation_) end
   local lo, hi = wide(a), wide(b)
-  local x, y = api.random_uniform(ctx), api.random_uniform(ctx)
-  return V(lo.x + (hi.x - lo.x) * x, lo.y + (hi.y - lo.y) * y, lo.z + (hi.z - lo.z) * api.random_uniform(ctx))
+  local x, y = api.random_uniform(ctx, self.slot_, self.generation_), api.random_uniform(ctx, self.slot_, self.generation_)
+  return V(lo.x + (hi.x - lo.x) * x, lo.y + (hi.y - lo.y) * y, lo.z + (hi.z - lo.z) * api.random_uniform(ctx, self.slot_, self.generation_))
 end
 function methods.direction(self)
   check(self, "direction")
-  api.random_direction(ctx)
+  api.random_direction(ctx, self.slot_, self.generation_)
   return V(answer.number[0], answer.number[1], answer.number[2])
 end
 function methods.normal(self)
   check(self, "normal")
-  return api.random_normal(ctx)
+  return api.random_normal(ctx, self.slot_, self.generation_)
 end
 setmetatable(methods, {
   __index = function(_, key)
-    fail("rng has no member '%s'%s", tostring(key), P.hint(key, { "uniform", "direction", "normal" }))
+    fail("rng has no member '%s'%s", tostring(key), P.hint(key, P.sorted_keys(P.value_members.rng)))
   end,
 })
 ffi.metatype(R, { __index = methods, __tostring = function() return "rng" end,
   __newindex = function() fail("rng has nothing to set") end })
-P.rng = R(1)
+P.R, P.rng = R, R(-1, 0)

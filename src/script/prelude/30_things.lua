@@ -7,6 +7,10 @@ local V, Q, F, istype, format = P.V, P.Q, P.F, P.ffi.istype, string.format
 
 local classes, by_table, by_ctype = {}, {}, {}
 P.classes = classes
+function P.add_class(class) by_table[class.table], by_ctype[tonumber(class.ctype)] = class, class end
+-- behaviours have a table each type: their classes are made when they are met (55_behaviors.lua)
+local function class_of_table(number) return by_table[number] or P.make_class(number) end
+P.class_of_table = class_of_table
 for i, name in ipairs { "sim", "body", "part", "joint", "motor", "shape" } do
   local class = { name = name, ctype = ffi.typeof(name), getters = {}, setters = {}, methods = {}, rows = {} }
   class.number = i - 1
@@ -30,13 +34,13 @@ P.names, P.handles = names, handles
 
 local thing
 local function intern(slot, generation)
-  local class = by_table[view.slots[slot].table]
+  local class = class_of_table(view.slots[slot].table)
   local h = class.ctype(slot, generation)
-  handles[slot] = h
   api.name(ctx, slot, generation)
   names[h] = text()
   api.owner(ctx, slot, generation)
   if answer.count ~= 0 then owners[h] = thing(answer.slot, answer.generation) end
+  handles[slot] = h  -- known from here on: a script may be stopped at any line
   return h
 end
 
@@ -53,6 +57,10 @@ function P.answered()
   if answer.count == 0 then return nil end
   return thing(answer.slot, answer.generation)
 end
+
+-- another class of handles; what one of its handles is called, and whose it is
+function P.add_handles(class) by_ctype[tonumber(class.ctype)] = class end
+function P.introduce(h, name, owner) names[h], owners[h] = name, owner end
 
 local function class_of(value)
   return type(value) == "cdata" and by_ctype[tonumber(ffi.typeof(value))] or nil
@@ -279,7 +287,10 @@ function P.finish(class)
   ffi.metatype(ctype, {
     __index = function(h, key)
       local get = getters[key]
-      if get then return get(h) end
+      if get then
+        local value = get(h)  -- no tail call: a getter returns to a Lua function, so that it can be compiled
+        return value
+      end
       return methods[key] or no_member(h, class, key)
     end,
     __newindex = function(h, key, value)

@@ -6,22 +6,25 @@ local fail, describe, thing, alive, istype = P.fail, P.describe, P.thing, P.aliv
 local L = ffi.typeof("list")
 P.L = L
 local kinds = { [0] = { name = "body", list = "bodies" }, { name = "part", list = "parts" },
-  { name = "joint", list = "joints" }, { name = "motor", list = "motors" }, { name = "shape", list = "shapes" } }
+  { name = "joint", list = "joints" }, { name = "motor", list = "motors" }, { name = "shape", list = "shapes" },
+  { name = "behavior", list = "behaviors" }, { name = "group", list = "groups" } }
 
 -- what a list holds is gathered when it is asked for and kept until the structure of the world changes
-local entries = { [0] = {}, {}, {}, {}, {} }
+local entries = { [0] = {}, {}, {}, {}, {}, {}, {} }
 
 local function gather(list, entry)
   local slot, generation, kind = list.slot_, list.generation_, list.kind_
   local owner = thing(slot, generation)
   P.slot_of(owner)
-  entry.version, entry.items, entry.matched = api.structure(ctx), {}, {}
-  local count = api.list_count(ctx, slot, generation, kind)
+  local count, items = api.list_count(ctx, slot, generation, kind), {}
   if count < 0 then P.gone(owner) end
   for i = 0, count - 1 do
     api.list_item(ctx, slot, generation, kind, i)
-    entry.items[i + 1] = thing(answer.slot, answer.generation)
+    items[i + 1] = thing(answer.slot, answer.generation)
   end
+  -- the version last: a script may be stopped at any line
+  entry.items, entry.matched = items, {}
+  entry.version = api.structure(ctx)
   return entry
 end
 
@@ -84,7 +87,8 @@ function P.find_in(owner, kind, key)
     fail("a %s is wanted by its name or number, not %s", kinds[kind].name, describe(key))
   end
   P.slot_of(key)
-  if kind > 0 and kind < 4 and key.body ~= owner then fail("%s does not belong to %s", P.label(key), P.label(owner)) end
+  local of = P.class_of(owner).name == "behavior" and owner.body or owner
+  if (kind > 0 and kind < 4 or kind == 5) and key.body ~= of then fail("%s does not belong to %s", P.label(key), P.label(owner)) end
   return key
 end
 

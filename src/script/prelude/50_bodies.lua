@@ -24,6 +24,7 @@ local function owner(h)
 end
 local function list(kind) return function(h) return P.list_of(h, kind) end end
 
+P.owner_of = owner
 for _, class in ipairs { part, joint, motor } do class.getters.body = owner end
 part.getters.shape = related(0)
 joint.getters.parent, joint.getters.child, joint.getters.motor = related(0), related(1), related(2)

@@ -1,14 +1,32 @@
--- Callbacks of a scene: start, tick, contacts, timers. Each runs by itself; one that errs is switched off and told.
+-- Callbacks of a scene: start, tick, contacts, timers. Each is a guarded call; one that errs is switched off and told.
 local P = ...
-local ffi, api, ctx, answer = P.ffi, P.api, P.ctx, P.answer
-local fail, istype, floor, xpcall = P.fail, P.ffi.istype, math.floor, xpcall
+local ffi, api, ctx, answer, guarded = P.ffi, P.api, P.ctx, P.answer, P.guarded
+local fail, istype, floor = P.fail, P.ffi.istype, math.floor
 local method = P.sim_method
 local number = answer.number
 
--- text, file, line of an error, told outside
-function P.report(fault)
-  if type(fault) ~= "table" then fault = { file = P.main, line = 0, text = tostring(fault) } end
-  api.script_error(ctx, fault.file, #fault.file, fault.line, fault.text, #fault.text)
+-- What a call registers is taken back when it fails: what to undo, and how long a list was. Entries of the call before
+-- are of no use any more.
+local journal = {}
+function P.log(list)
+  if #journal > 0 and journal[1].call ~= answer.call then journal = {} end
+  journal[#journal + 1] = { call = answer.call, list = list, count = #list }
+end
+local function add(list, entry)
+  P.log(list)
+  list[#list + 1] = entry
+end
+P.on_failure[#P.on_failure + 1] = function()
+  for i = #journal, 1, -1 do
+    local done = journal[i]
+    if done.call == answer.call then
+      if done.timer then done.timer.off = nil end
+      if done.list then
+        for k = #done.list, done.count + 1, -1 do done.list[k] = nil end
+      end
+    end
+  end
+  journal = {}
 end
 
 -- calls what is registered, in order; what is registered meanwhile has its turn the next time
@@ -17,28 +35,28 @@ local function call_all(list, a, b, c, d)
   for i = 1, n do
     local entry = list[i]
     if not entry.off then
-      local ok, fault = xpcall(entry.f, P.handler, a, b, c, d)
-      if not ok then
+      if not guarded(entry.f, a, b, c, d) then
         entry.off = true
-        P.report(fault)
+        api.report(ctx)
       end
     end
   end
 end
+jit.off(call_all)
 
 local starts, steps, contacts, timers = {}, {}, {}, {}
 
 method("on_start", function(_, f)
   P.want_function(f, "sim:on_start")
-  starts[#starts + 1] = { f = f }
+  add(starts, { f = f })
 end)
 method("on_step", function(_, f)
   P.want_function(f, "sim:on_step")
-  steps[#steps + 1] = { f = f }
+  add(steps, { f = f })
 end)
 method("on_contact", function(_, f)
   P.want_function(f, "sim:on_contact")
-  contacts[#contacts + 1] = { f = f }
+  add(contacts, { f = f })
 end)
 
 -- Timers. A sum of time steps misses a multiple by a few bits, so a nanosecond counts as reached.
@@ -53,7 +71,7 @@ local function add_timer(f, entry)
   timer_count = timer_count + 1
   entry.f, entry.handle = f, T(timer_count)
   timer_of[timer_count] = entry
-  timers[#timers + 1] = entry
+  add(timers, entry)
   return entry.handle
 end
 
@@ -97,7 +115,10 @@ local timer_methods = {
     if not istype(T, handle) then fail("cancel is a method of a timer: write timer:cancel()") end
     P.needs_callback("timer:cancel")
     local entry = timer_of[handle.number_]
-    if entry then entry.off = true end
+    if not entry or entry.off then return end
+    P.log(timers)
+    journal[#journal].timer = entry
+    entry.off = true
   end,
 }
 ffi.metatype(T, {
@@ -125,8 +146,8 @@ local function run_timers()
       due = time + kSlack >= entry.due
     end
     if due then
-      local ok, fault = xpcall(entry.f, P.handler)
-      if not ok then P.report(fault) end
+      local ok = guarded(entry.f)
+      if not ok then api.report(ctx) end
       if not (ok and entry.period) then entry.off = true end
     end
   end
@@ -141,6 +162,7 @@ local function run_timers()
   end
   for i = #timers, kept + 1, -1 do timers[i] = nil end
 end
+jit.off(run_timers)
 
 local function run_contacts()
   if #contacts == 0 then return end
@@ -158,7 +180,6 @@ local function run_contacts()
   end
 end
 
-P.entry = P.entry or {}
 function P.entry.start()
   call_all(starts)
 end

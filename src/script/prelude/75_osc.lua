@@ -38,7 +38,7 @@ end
 
 local osc = {}
 local members = { "address", "sender", "on", "send", "reply", "listen", "stream_to", "to" }
-P.osc_members = members
+P.osc_members, P.osc_functions = members, osc
 local function check(self, what)
   if self ~= P.osc then fail("%s is a method of osc: write osc:%s(…), with a colon", what, what) end
 end
@@ -47,6 +47,7 @@ function osc.on(self, pattern, f)
   check(self, "on")
   want_address(pattern, "osc:on")
   P.want_function(f, "osc:on")
+  P.log(handlers)
   handlers[#handlers + 1] = { pattern = pattern, f = f }
   api.osc_handlers(ctx, #handlers)
 end
@@ -146,6 +147,8 @@ P.osc = setmetatable({}, {
   __metatable = "osc",
 })
 
+P.on_failure[#P.on_failure + 1] = function() api.osc_handlers(ctx, #handlers) end
+
 -- every handler whose pattern fits hears it; one that errs hears the next message again
 function P.entry.message(address, sender, ...)
   local heard = false
@@ -156,10 +159,10 @@ function P.entry.message(address, sender, ...)
     local pattern = entry.pattern
     if pattern == address or api.osc_matches(ctx, pattern, #pattern, address, #address) ~= 0 then
       heard = true
-      local ok, fault = xpcall(entry.f, P.handler, ...)
-      if not ok then P.report(fault) end
+      if not P.guarded(entry.f, ...) then api.report(ctx) end
     end
   end
   address_now, sender_now = outer_address, outer_sender
   return heard
 end
+jit.off(P.entry.message)

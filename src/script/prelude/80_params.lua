@@ -94,11 +94,18 @@ local function declare_one(spec, i)
   if spec.unit then P.check(api.param_unit(ctx, spec.unit, #spec.unit)) end
 end
 
+-- the rows of a list of declarations, gathered behind the door: the scene's, or a behaviour's
+function P.gather_rows(list)
+  if type(list) ~= "table" then fail("params takes a list of { \"name\", default, … }, not %s", describe(list)) end
+  api.param_begin(ctx)
+  for i, spec in ipairs(list) do declare_one(spec, i) end
+end
+
 local function declare(_, list)
   P.needs_top_level("params")
+  P.needs_scene("params")
   if node then fail("params is called once, with all parameters of the scene") end
-  if type(list) ~= "table" then fail("params takes a list of { \"name\", default, … }, not %s", describe(list)) end
-  for i, spec in ipairs(list) do declare_one(spec, i) end
+  P.gather_rows(list)
   if api.param_done(ctx) ~= 0 then fail("%s", P.text()) end
   class = { name = "params", table = answer.count, getters = {}, setters = {}, methods = {}, rows = {} }
   node = { slot_ = answer.slot, generation_ = answer.generation }
@@ -112,9 +119,10 @@ function P.params_moved()
   node.slot_, node.generation_ = answer.slot, answer.generation
 end
 
+function P.parameter_names() return class and class.getters or {} end
+
 local function no_parameter(key)
-  local names = class and P.sorted_keys(class.getters) or {}
-  fail("params has no '%s'%s", tostring(key), P.hint(key, names))
+  fail("params has no '%s'%s", tostring(key), P.hint(key, P.sorted_keys(P.parameter_names())))
 end
 
 P.params = setmetatable({}, {

@@ -1,14 +1,15 @@
 -- Errors as a person reads them: file:line: what, the source line, the way there through the scripts.
 local P = ...
+local api, ctx = P.api, P.ctx
 local getinfo, format, sub, find = debug.getinfo, string.format, string.sub, string.find
 
--- text of every script by the name that messages show
+-- text of every script by the name that messages show; true where it is no longer known
 local sources = {}
 P.sources = sources
 
 local function source_line(file, line)
   local text, at = sources[file], 1
-  if not text then return nil end
+  if type(text) ~= "string" then return nil end
   for _ = 2, line do
     local stop = find(text, "\n", at, true)
     if not stop then return nil end
@@ -66,29 +67,40 @@ local function traceback(level)
   return lines
 end
 
+-- what is shown is read by people, and handled where no script can be stopped
+local function shortened(text, most) return #text > most and sub(text, 1, most) .. "…" or text end
+
 local function fault_of(file, line, message, trace)
   local text = message
   if file then
     text = format("%s:%d: %s", file, line, message)
     local source = source_line(file, line)
-    if source then text = format("%s\n  %d | %s", text, line, source) end
+    if source then text = format("%s\n  %d | %s", text, line, shortened(source, 200)) end
   end
   if #trace > 0 then text = text .. "\nstack traceback:\n" .. table.concat(trace, "\n") end
-  return { file = file or P.main or "", line = line or 0, text = text }
+  return { file = file or P.main or "", line = line or 0, text = text }  -- 0: the guard knows where it began
 end
 
--- the message handler of every protected call; what is thrown may be anything, and its __tostring is never called
+-- the message handler of every guarded call; what is thrown may be anything, and its __tostring is never called
 function P.handler(thrown)
+  if api.stopped(ctx) ~= 0 then return P.stopped_fault(traceback(3)) end
   if type(thrown) ~= "string" then
     thrown = type(thrown) == "number" and tostring(thrown) or format("an error that is no text but a %s", type(thrown))
   end
-  local file, line, message = place_in(thrown)
+  local file, line, message = place_in(shortened(thrown, 4000))
   if not file then file, line = P.where(3) end
   return fault_of(file, line, explain(message), traceback(3))
 end
 
--- a script that can't be compiled
-function P.syntax_fault(message)
-  local file, line, rest = place_in(message)
-  return fault_of(file, line, rest, {})
+-- of a call that was stopped; it may have caught that itself, and nothing came out
+function P.stopped_fault(trace)
+  api.stopped(ctx)
+  local file, line = P.text(), tonumber(P.answer.number[0])
+  api.stop_text(ctx)
+  return fault_of(#file > 0 and file or nil, line, P.text(), trace or {})
+end
+
+P.entry.handler, P.entry.stopped_fault = P.handler, P.stopped_fault
+function P.entry.failed()
+  for _, f in ipairs(P.on_failure) do f() end
 end

@@ -1,0 +1,72 @@
+-- A hundred small creatures, a head with a tail that beats, flock over a floor. From outside:
+--   /swarm/scatter 2      a gust from the middle blows them apart
+--   /swarm/call 1.5 0     they gather about x, y (m); without numbers they are free again
+-- Everything else is a parameter: /physics/group/swarm/alignment 0, say, and the flock falls to bits.
+
+local kCreatures = 100
+local kArena = 5 -- m, the radius in which they stay
+
+sim.gravity = vec3(0, 0, -9.81)
+
+params {
+  { "home", 1.5, min = 0, max = 20, unit = "N/kg", doc = "How strongly the edge of the arena turns them back." },
+}
+
+local floor = sim:add_body("floor")
+floor:add_part("floor", sim:add_plane_shape("floor"), { friction = 0 }) -- they glide
+
+-- one creature; the others are its copies
+local head_shape = sim:add_sphere_shape("head", 0.06)
+local tail_shape = sim:add_box_shape("tail", vec3(0.16, 0.012, 0.05))
+local first = sim:add_body("bug1")
+local head = first:add_part("head", head_shape, { mass = 0.1, position = vec3(0, 0, 0.06), friction = 0 })
+local tail = first:add_part("tail", tail_shape, { mass = 0.01, position = vec3(-0.15, 0, 0.06), friction = 0 })
+first:add_motor(first:add_joint("tail", head, tail, { position = vec3(-0.07, 0, 0.06), axis = vec3(0, 0, 1) }))
+first:add_behavior("breathe", "beat", { rate = 2.5, depth = 0.5 })
+
+-- a sunflower's seeds: evenly over the disc, no two at one place, each looking its own way
+local bugs = {}
+for i = 1, kCreatures do
+  local angle, r = i * 2.39996, 0.35 * math.sqrt(i)
+  local place = {
+    position = vec3(r * math.cos(angle), r * math.sin(angle), 0.06),
+    rotation = quat.euler(0, 0, rng:uniform(-math.pi, math.pi)),
+  }
+  if i == 1 then
+    first.position, first.rotation = place.position, place.rotation
+    bugs[i] = first
+  else
+    bugs[i] = first:copy("bug" .. i, place)
+  end
+end
+
+sim:add_group_behavior("flock", "swarm", { bodies = "bug*", parts = "head", radius = 1, distance = 0.35, speed = 0.8 })
+
+-- they begin as they look
+sim:on_start(function()
+  for _, bug in ipairs(bugs) do bug.linear_velocity = bug.rotation * vec3(0.5, 0, 0) end
+end)
+
+-- nobody leaves the arena; who is called goes there
+state.called = state.called or false
+sim:on_step(function()
+  local middle = state.called or vec3()
+  local edge = state.called and 0.5 or kArena
+  for _, bug in ipairs(bugs) do
+    local part = bug.root
+    local way = middle - part.center
+    way = vec3(way.x, way.y, 0)
+    local out = way:length() - edge
+    if out > 0 then part:apply_force(way:normalized() * (params.home * math.min(out, 2) * part.mass)) end
+  end
+end)
+
+osc:on("/swarm/scatter", function(strength)
+  for _, bug in ipairs(bugs) do
+    local away = vec3(bug.root.center.x, bug.root.center.y, 0):normalized()
+    bug.root:apply_impulse(away * ((strength or 1) * bug.root.mass))
+  end
+end)
+osc:on("/swarm/call", function(x, y)
+  state.called = x and vec3(x, y or 0, 0) or false
+end)

@@ -1,0 +1,59 @@
+// A scene that never runs tells its names; the tables tell the rest.
+#include "app/annotate.h"
+
+#include <cstdio>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+
+#include <fmt/format.h>
+
+#include "base/text.h"
+#include "engine/engine.h"
+#include "script/annotate.h"
+
+namespace limber {
+
+namespace {
+
+// what scripts ask of the outside leads nowhere here
+struct Nobody : ScriptHost {
+  void send(Message) override {}
+  void reply(const Origin&, Message) override {}
+  void send_direct(const Origin&, Message) override {}
+  void plan_osc(const OscPlan&) override {}
+  void ask_reset() override {}
+  void script_error(std::string_view, int, std::string_view) override {}
+};
+
+std::string content_of(const std::string& file) {
+  std::ifstream in(file, std::ios::binary);
+  return {std::istreambuf_iterator<char>(in), {}};
+}
+
+}  // namespace
+
+std::string annotations_text() {
+  Store store;
+  World world(store);
+  Nobody host;
+  Scene scene(world, host, {});
+  return annotations(scene.names());
+}
+
+int annotate_command(const std::string& file) {
+  const std::string text = annotations_text();
+  if (file.empty()) {
+    fmt::print("{}", text);
+    return 0;
+  }
+  std::error_code ignored;
+  const std::filesystem::path folder = std::filesystem::path(file).parent_path();
+  if (!folder.empty()) std::filesystem::create_directories(folder, ignored);
+  std::ofstream(file, std::ios::binary) << text;
+  if (content_of(file) == text) return 0;
+  fmt::print(stderr, "limber: {} can't be written; look at the folder's permissions\n", printable(file));
+  return 3;
+}
+
+}  // namespace limber

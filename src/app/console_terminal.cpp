@@ -1,0 +1,240 @@
+// libedit, with a way of reading keys that also listens to the program.
+#include "app/console_terminal.h"
+
+#include <histedit.h>
+#include <poll.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <clocale>
+#include <csignal>
+#include <cstdio>
+#include <cwchar>
+#include <memory>
+
+#include <fmt/format.h>
+
+#include "app/console_history.h"
+#include "app/console_session.h"
+
+namespace limber {
+
+namespace {
+
+constexpr wchar_t kCancel = L'\x03';  // what Ctrl+C becomes for the editor
+constexpr int kColumns = 80;
+
+volatile std::sig_atomic_t interrupted = 0;
+
+void on_interrupt(int) { interrupted = 1; }
+
+bool take_interrupt() {
+  const bool was = interrupted != 0;
+  interrupted = 0;
+  return was;
+}
+
+class Terminal {
+ public:
+  explicit Terminal(ConsoleLink link);
+  ~Terminal();
+  Terminal(const Terminal&) = delete;
+  Terminal& operator=(const Terminal&) = delete;
+
+  int run();
+
+ private:
+  static Terminal& of(EditLine* edit);
+  static char* prompt(EditLine* edit);
+  static int read_key(EditLine* edit, wchar_t* key);
+  static unsigned char on_cancel(EditLine* edit, int key);
+  static unsigned char on_tab(EditLine* edit, int key);
+
+  int next_key(wchar_t* key);
+  int decode(wchar_t* key);
+  unsigned char complete();
+  void offer(const std::vector<std::string>& words) const;
+  void remember(const std::string& line);
+
+  ConsoleSession session_;
+  ConsoleHistory kept_{ConsoleHistory::default_file()};
+  EditLine* edit_ = nullptr;
+  History* history_ = nullptr;
+  std::string pending_;  // lines of a chunk that is not whole yet
+  bool cancelled_ = false;
+  std::mbstate_t bytes_{};  // of a character that has come in part
+};
+
+Terminal::Terminal(ConsoleLink link) : session_(std::move(link), take_interrupt) {
+  // only how characters are coded; numbers keep their point
+  if (std::setlocale(LC_CTYPE, "") == nullptr || MB_CUR_MAX < 2) std::setlocale(LC_CTYPE, "C.UTF-8");
+  history_ = history_init();
+  HistEvent event;
+  history(history_, &event, H_SETSIZE, static_cast<int>(ConsoleHistory::kMostLines));
+  for (const std::string& line : kept_.lines()) history(history_, &event, H_ENTER, line.c_str());
+
+  edit_ = el_init("limber", stdin, stdout, stderr);
+  el_set(edit_, EL_CLIENTDATA, this);
+  el_set(edit_, EL_EDITOR, "emacs");
+  el_set(edit_, EL_PROMPT, &Terminal::prompt);
+  el_set(edit_, EL_SIGNAL, 0);
+  el_set(edit_, EL_HIST, history, history_);
+  el_set(edit_, EL_GETCFN, &Terminal::read_key);
+  el_set(edit_, EL_ADDFN, "limber-cancel", "Gives the line up", &Terminal::on_cancel);
+  el_set(edit_, EL_ADDFN, "limber-complete", "Completes a name", &Terminal::on_tab);
+  el_set(edit_, EL_BIND, "^C", "limber-cancel", nullptr);
+  el_set(edit_, EL_BIND, "^I", "limber-complete", nullptr);
+  el_set(edit_, EL_BIND, "^R", "em-inc-search-prev", nullptr);
+
+  // Ctrl+C ends a wait, and comes in nowhere else
+  struct sigaction act {};
+  act.sa_handler = on_interrupt;
+  sigaction(SIGINT, &act, nullptr);
+  sigset_t interrupt;
+  sigemptyset(&interrupt);
+  sigaddset(&interrupt, SIGINT);
+  pthread_sigmask(SIG_BLOCK, &interrupt, nullptr);
+}
+
+Terminal::~Terminal() {
+  el_end(edit_);
+  history_end(history_);
+}
+
+Terminal& Terminal::of(EditLine* edit) {
+  void* self = nullptr;
+  el_get(edit, EL_CLIENTDATA, &self);
+  return *static_cast<Terminal*>(self);
+}
+
+char* Terminal::prompt(EditLine* edit) {
+  static char first[] = "limber> ";
+  static char more[] = "     .. ";
+  return of(edit).pending_.empty() ? first : more;
+}
+
+int Terminal::read_key(EditLine* edit, wchar_t* key) { return of(edit).next_key(key); }
+
+unsigned char Terminal::on_cancel(EditLine* edit, int) {
+  of(edit).cancelled_ = true;
+  return CC_NEWLINE;
+}
+
+unsigned char Terminal::on_tab(EditLine* edit, int) { return of(edit).complete(); }
+
+// the next key; while none comes, what the program says is shown above the line that is being typed
+int Terminal::next_key(wchar_t* key) {
+  std::fflush(stdout);
+  while (true) {
+    if (take_interrupt()) {
+      *key = kCancel;
+      return 1;
+    }
+    pollfd polled[2] = {{STDIN_FILENO, POLLIN, 0}, {session_.ended() ? -1 : session_.fd(), POLLIN, 0}};
+    sigset_t none;
+    sigemptyset(&none);
+    if (ppoll(polled, 2, nullptr, &none) < 0) {
+      if (errno != EINTR) return -1;
+      continue;
+    }
+    if (polled[1].revents != 0 && session_.has_news()) {
+      fmt::print("\r\x1b[K");
+      std::fflush(stdout);
+      session_.show_news();
+      el_set(edit_, EL_REFRESH);
+    }
+    if (session_.ended()) return 0;  // the end, as if by Ctrl+D
+    if (polled[0].revents == 0) continue;
+    if (const int got = decode(key); got <= 1) return got;
+  }
+}
+
+// 1: a character; 0: the end; -1: an error; 2: it is not whole yet
+int Terminal::decode(wchar_t* key) {
+  char byte = 0;
+  const ssize_t got = read(STDIN_FILENO, &byte, 1);
+  if (got < 0 && (errno == EINTR || errno == EAGAIN)) return 2;
+  if (got <= 0) return got == 0 ? 0 : -1;
+  const std::size_t length = std::mbrtowc(key, &byte, 1, &bytes_);
+  if (length == static_cast<std::size_t>(-2)) return 2;
+  if (length == static_cast<std::size_t>(-1)) {
+    bytes_ = {};
+    return 2;  // no text: passed over
+  }
+  return 1;
+}
+
+unsigned char Terminal::complete() {
+  const LineInfo* line = el_line(edit_);
+  const std::string before(line->buffer, line->cursor);
+  std::size_t word = 0;
+  std::vector<std::string> words = session_.complete(pending_ + before, word);
+  if (words.empty()) return CC_REFRESH_BEEP;
+  // as far as all of them go
+  std::string common = words.front();
+  for (const std::string& each : words) {
+    const auto [end, other] = std::ranges::mismatch(common, each);
+    common.erase(end, common.end());
+  }
+  if (common.size() > word) {
+    el_insertstr(edit_, common.c_str() + word);
+    return CC_REFRESH;
+  }
+  if (words.size() == 1) return CC_NORM;
+  offer(words);
+  return CC_REDISPLAY;
+}
+
+void Terminal::offer(const std::vector<std::string>& words) const {
+  std::size_t widest = 0;
+  for (const std::string& each : words) widest = std::max(widest, each.size());
+  const std::size_t columns = std::max<std::size_t>(1, kColumns / (widest + 2));
+  for (std::size_t i = 0; i < words.size(); i++) {
+    if (i % columns == 0) fmt::print("\n");
+    fmt::print("{:<{}}", words[i], widest + 2);
+  }
+  fmt::print("\n");
+}
+
+void Terminal::remember(const std::string& line) {
+  HistEvent event;
+  history(history_, &event, H_ENTER, line.c_str());
+  kept_.add(line);
+}
+
+int Terminal::run() {
+  while (true) {
+    int count = 0;
+    const char* typed = el_gets(edit_, &count);
+    if (std::exchange(cancelled_, false)) {
+      fmt::print("^C\n");
+      pending_.clear();
+      continue;
+    }
+    if (typed == nullptr || count <= 0) break;
+    std::string line(typed, static_cast<std::size_t>(count));
+    while (line.ends_with('\n') || line.ends_with('\r')) line.pop_back();
+    if (line.empty() && pending_.empty()) continue;
+    remember(line);
+    const ConsoleSession::Answer answer = session_.evaluate(pending_ + line);
+    if (answer == ConsoleSession::Answer::incomplete) {
+      pending_ += line + "\n";
+      continue;
+    }
+    pending_.clear();
+    if (answer == ConsoleSession::Answer::left) fmt::print(" (it may still run; its answer is not awaited)\n");
+  }
+  fmt::print("{}\n", session_.ended() ? "\nlimber has ended" : "");
+  return 0;
+}
+
+}  // namespace
+
+int console_terminal(ConsoleLink link, const ConsoleLine& hello) {
+  fmt::print("limber {}, number {}, plays {}. Lua; Tab completes, Ctrl+C gives a line up, Ctrl+D leaves.\n",
+             hello.version, hello.pid, hello.text);
+  return Terminal(std::move(link)).run();
+}
+
+}  // namespace limber

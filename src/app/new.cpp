@@ -1,0 +1,170 @@
+// Templates (src/app/templates, inside the program) with names filled in.
+#include "app/new.h"
+
+#include <fcntl.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <filesystem>
+#include <string_view>
+#include <system_error>
+#include <vector>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "app/paths.h"
+#include "base/build_info.h"
+#include "base/check.h"
+#include "base/descriptor.h"
+#include "base/embedded.h"
+#include "base/text.h"
+#include "script/files.h"
+
+namespace limber {
+
+/// The files of src/app/templates, which the build puts inside the program.
+std::span<const EmbeddedFile> template_files();
+
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr int kFine = 0;
+constexpr int kInput = 1;
+constexpr int kUsage = 2;
+constexpr int kMachine = 3;
+constexpr std::size_t kMostName = 64;
+
+int fail(int code, std::string_view text) {
+  fmt::print(stderr, "limber: new: {}\n", printable(text));
+  return code;
+}
+
+// small letters, digits and _, so that it can be a file, an address and a word in Lua
+bool good_name(std::string_view name) {
+  constexpr std::string_view kLetters = "abcdefghijklmnopqrstuvwxyz";
+  constexpr std::string_view kAll = "abcdefghijklmnopqrstuvwxyz0123456789_";
+  return !name.empty() && name.size() <= kMostName && kLetters.find(name[0]) != std::string_view::npos &&
+         name.find_first_not_of(kAll) == std::string_view::npos;
+}
+
+// what would be a good name and looks like this one
+std::string nearest_good_name(std::string_view name) {
+  std::string good;
+  for (const char c : name.substr(0, kMostName)) {
+    const char small = c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
+    if (good_name("a" + std::string(1, small))) {
+      if (!good.empty() || good_name(std::string(1, small))) good += small;
+    } else if (!good.empty() && good.back() != '_') {
+      good += '_';
+    }
+  }
+  while (good.ends_with('_')) good.pop_back();
+  return good;
+}
+
+std::string filled(std::string_view text, std::string_view name) {
+  const fs::path data = data_dir().empty() ? fs::path(install_data_dir()) : fs::path(data_dir());
+  // as it stands between the quotes of a JSON text
+  const std::string library = nlohmann::json((data / "scripts" / "library").string()).dump(-1, ' ', true);
+  const std::pair<std::string_view, std::string> fillings[] = {{"{{NAME}}", printable(name)},
+                                                               {"{{LIBRARY}}", library.substr(1, library.size() - 2)}};
+  std::string out(text);
+  for (const auto& [mark, value] : fillings) {
+    for (std::size_t at = out.find(mark); at != std::string::npos; at = out.find(mark, at + value.size()))
+      out.replace(at, mark.size(), value);
+  }
+  return out;
+}
+
+// writes a file that must not be there; 0, or the error's number
+int write_new(const fs::path& path, std::string_view text) {
+  std::error_code fault;
+  fs::create_directories(path.parent_path(), fault);
+  const Descriptor file(open(path.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666));
+  if (!file.open()) return errno;
+  while (!text.empty()) {
+    const ssize_t n = write(file.fd(), text.data(), text.size());
+    if (n <= 0) return errno;
+    text.remove_prefix(static_cast<std::size_t>(n));
+  }
+  return 0;
+}
+
+// writes it and says so; the exit code
+int write_and_say(const fs::path& path, std::string_view text) {
+  const int fault = write_new(path, text);
+  if (fault == EEXIST)
+    return fail(kInput, fmt::format("{} is there already and stays as it is; choose another name", path.string()));
+  if (fault != 0) {
+    return fail(kMachine, fmt::format("{} can't be written: {}; look at the folder's permissions", path.string(),
+                                      std::generic_category().message(fault)));
+  }
+  fmt::print("{}\n", printable(path.string()));
+  return kFine;
+}
+
+int new_show(const std::string& folder) {
+  std::error_code fault;
+  const fs::path root(folder);
+  if (fs::exists(root, fault) && !(fs::is_directory(root, fault) && fs::is_empty(root, fault)))
+    return fail(kInput, fmt::format("{} is there already; name a folder that is new or empty", folder));
+  const std::string name = fs::absolute(root, fault).lexically_normal().filename().string();
+  const std::string title = name.empty() ? fs::absolute(root, fault).parent_path().filename().string() : name;
+  constexpr std::string_view kFolder = "show/";
+  for (const EmbeddedFile& file : template_files()) {
+    if (!file.name.starts_with(kFolder)) continue;
+    std::string path(file.name.substr(kFolder.size()));
+    if (path == "luarc.json") path = ".luarc.json";
+    if (const int code = write_and_say(root / path, filled(file.text, title)); code != kFine) return code;
+  }
+  fmt::print("\nNext:  cd {} && limber play scripts/main.lua\n", printable(folder));
+  return kFine;
+}
+
+// the nearest folder at or above this one that holds scripts/; empty: none
+fs::path show_folder() {
+  std::error_code fault;
+  const fs::path here = fs::current_path(fault);
+  const fs::path show = ScriptFiles((here / "scene.lua").string(), "").show_folder();
+  return !fault && fs::is_directory(show / "scripts", fault) ? show : fs::path();
+}
+
+int new_file(const NewCommand& command) {
+  const bool scene = command.what == NewCommand::What::scene;
+  const std::string_view kind = scene ? "scene" : "behavior";
+  std::string name = command.name;
+  if (name.ends_with(".lua")) name.resize(name.size() - 4);
+  if (!good_name(name)) {
+    const std::string near = nearest_good_name(name);
+    return fail(kUsage,
+                fmt::format("'{}' can't be a {}'s name: it has small letters, digits and _, begins with a "
+                            "letter, and is up to {} long{}",
+                            command.name, kind, kMostName, near.empty() ? "" : fmt::format("; such as '{}'", near)));
+  }
+  const fs::path show = show_folder();
+  if (show.empty()) {
+    return fail(kInput,
+                "there is no show here: go into one (a folder that holds scripts/), or make one: limber new show DIR");
+  }
+  const EmbeddedFile* const text = find_embedded(template_files(), scene ? "scene.lua" : "behavior.lua");
+  LIMBER_CHECK(text != nullptr);
+  const fs::path path = show / (scene ? "scripts" : "behaviors_lua") / (name + ".lua");
+  if (const int code = write_and_say(path, filled(text->text, name)); code != kFine) return code;
+  if (scene) {
+    fmt::print("\nNext:  limber play {}\n", printable(path.string()));
+  } else {
+    fmt::print("\nNext:  in a scene, body:add_behavior(\"{0}\", \"my_{0}\")\n", name);
+  }
+  return kFine;
+}
+
+}  // namespace
+
+int new_command(const NewCommand& command) {
+  return command.what == NewCommand::What::show ? new_show(command.name) : new_file(command);
+}
+
+}  // namespace limber

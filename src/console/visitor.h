@@ -1,0 +1,57 @@
+// Visitor: one console that is connected. Bounded: one request at a time, a line's length, and what waits to be read.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <string>
+
+#include "base/descriptor.h"
+#include "console/protocol.h"
+
+namespace limber {
+
+/// [the server's thread]
+class Visitor {
+ public:
+  /// Hands a request on; the answer comes later by answer(). The text of why it can't be, or nothing.
+  using Ask = std::function<std::string(const ConsoleRequest&)>;
+
+  /// Lines of the log after `seen` are told.
+  Visitor(Descriptor connection, std::uint64_t seen);
+
+  int fd() const { return connection_.fd(); }
+  /// What to poll for.
+  short events() const;
+  /// Says a line as it is.
+  void say(std::string_view line);
+  /// Reads some of what has come, and asks for the next request unless one is under way.
+  void receive(const Ask& ask);
+  void answer(std::uint64_t id, const Evaluation& said);
+  /// What the log has for it; while a request is under way it waits, so that what the request printed can be told
+  /// apart.
+  void tell_log();
+  /// Writes what the other end takes.
+  void send();
+  /// Nothing more can come of it. One that left while its request is under way stays until that is answered: so what is
+  /// under way is bounded by how many are let in.
+  bool gone() const { return !busy_ && (gone_ || (ends_ && out_.empty())); }
+
+ private:
+  void read_some();
+  bool next_line(std::string& line);
+  void handle(const std::string& line, const Ask& ask);
+  void leave();
+  void tell_lines(std::uint64_t up_to, std::uint64_t id);
+  bool waits_to_be_read() const;
+
+  Descriptor connection_;
+  std::string in_;
+  std::string out_;
+  std::uint64_t seen_;
+  std::uint64_t missed_ = 0;
+  bool busy_ = false;  // a request is under way
+  bool ends_ = false;  // the other end says no more
+  bool gone_ = false;
+};
+
+}  // namespace limber

@@ -1,0 +1,2 @@
+-- Beside these, scripts see the following names of Lua's own, as LuaJIT has them:
+---@names

@@ -1,0 +1,130 @@
+// Finding, declaring, calling.
+#include "script/behavior_scripts.h"
+
+#include <algorithm>
+#include <filesystem>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "base/text.h"
+#include "script/context.h"
+#include "script/lua_behavior.h"
+#include "script/vm.h"
+#include "sim/behavior_list.h"
+
+namespace limber {
+
+namespace {
+
+// every place where the file of a type could have been
+std::string places(const ScriptFiles& files) {
+  std::string text;
+  for (const std::string& folder : files.behavior_folders()) text += fmt::format("\n  {}", folder);
+  return text;
+}
+
+}  // namespace
+
+void BehaviorScripts::close() {
+  vm_ = nullptr;
+  context_ = nullptr;
+}
+
+bool BehaviorScripts::knows(std::string_view type) const {
+  const std::string wanted = plain_type_name(type);
+  return std::ranges::any_of(files_, [&](const BehaviorFile& f) { return plain_type_name(f.type) == wanted; });
+}
+
+Result<std::int32_t> BehaviorScripts::read(std::string_view type) {
+  const ScriptFiles& files = context_->files;
+  const BehaviorTypes& types = context_->world->behaviors().types();
+  const std::string path = context_->sources->find_behavior(files, type);
+  if (path.empty()) {
+    std::vector<std::string> names = files.behavior_names();
+    for (const auto& known : types.all()) names.push_back(known->name);
+    return Error{fmt::format("there is no behavior type '{}'{}\nlooked for its file in{}", printable(type),
+                             name_hint(type, names), places(files))};
+  }
+  Result<std::string> text = context_->sources->text(path);
+  if (!text) return Error{text.error()};
+  const std::string name = std::filesystem::path(path).stem().string();
+  files_.push_back({name, path, files.shown(path), std::move(*text)});
+  generators_.emplace_back();
+  return static_cast<std::int32_t>(files_.size()) - 1;
+}
+
+void BehaviorScripts::forget(std::int32_t file) {
+  files_.resize(static_cast<std::size_t>(file));
+  generators_.resize(files_.size());
+}
+
+Result<std::shared_ptr<const BehaviorType>> BehaviorScripts::declare(std::int32_t number, std::string doc,
+                                                                     bool is_group, std::vector<Row> parameters) {
+  const std::string& name = file(number).type;
+  const auto make = [scripts = shared_from_this(), number]() -> std::unique_ptr<Behavior> {
+    return std::make_unique<LuaBehavior>(scripts, number);
+  };
+  BehaviorTypes& types = context_->world->behaviors().types();
+  const Result<void> added =
+      types.add(BehaviorType::of(name, std::move(doc), BehaviorTargets::any, is_group, std::move(parameters), make));
+  if (!added) return Error{added.error()};
+  return types.find(name);
+}
+
+Random& BehaviorScripts::generator(std::int32_t file) {
+  Generator& generator = generators_[static_cast<std::size_t>(file)];
+  const std::uint64_t seed = context_->world->seed();
+  const bool later_seed = context_->answer.top_level != 0 && generator.seed != seed;
+  if (!generator.seeded || later_seed) {
+    generator = {Random(seed, files_[static_cast<std::size_t>(file)].type + ".lua"), seed, true};
+  }
+  return generator.random;
+}
+
+std::uint64_t BehaviorScripts::hash(std::uint64_t start) const {
+  for (const Generator& generator : generators_) {
+    if (!generator.seeded) continue;
+    const auto& words = generator.random.state();
+    start = hash_bytes({reinterpret_cast<const char*>(words.data()), sizeof words}, start);
+  }
+  return start;
+}
+
+// what every call into a behaviour's functions goes through
+template <class Call>
+BehaviorFault BehaviorScripts::inside(Call call) {
+  if (vm_ == nullptr) return {"the scene no longer names this type; name it once at the top level", "", 0};
+  for (const std::int32_t number : std::exchange(dropped_, {})) vm_->drop_behavior(number);
+  const std::int32_t outer = std::exchange(context_->answer.in_behavior, 1);
+  BehaviorFault fault = call();
+  context_->answer.in_behavior = outer;
+  return fault;
+}
+
+std::int32_t BehaviorScripts::make(const Behavior& behavior, std::int32_t file) {
+  return vm_ == nullptr ? 0 : vm_->make_behavior(file, behavior.id());
+}
+
+BehaviorFault BehaviorScripts::start(std::int32_t number) {
+  return inside([&] { return vm_->start_behavior(number); });
+}
+
+BehaviorFault BehaviorScripts::step(std::int32_t number, double dt) {
+  return inside([&] { return vm_->step_behavior(number, dt); });
+}
+
+BehaviorFault BehaviorScripts::restore(std::int32_t number, std::string_view state, bool migrate) {
+  return inside([&] { return vm_->restore_behavior(number, state, migrate); });
+}
+
+Result<std::string> BehaviorScripts::state(std::int32_t number) {
+  if (vm_ == nullptr) return Error{"the script of this behaviour is gone"};
+  return vm_->behavior_state(number);
+}
+
+void BehaviorScripts::drop(std::int32_t number) {
+  if (vm_ != nullptr) dropped_.push_back(number);
+}
+
+}  // namespace limber

@@ -1,0 +1,84 @@
+// BehaviorScripts: the files of behaviors_lua/ that a scene's run has loaded, and the way from a behaviour in the world
+// to its functions in the Vm. Behaviours share it, and may outlive the Vm. [sim]
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "base/id.h"
+#include "base/random.h"
+#include "base/result.h"
+#include "sim/behavior.h"
+
+namespace limber {
+
+struct ScriptContext;
+class Vm;
+
+/// A file of behaviors_lua/, as it was when the run loaded it.
+struct BehaviorFile {
+  std::string type;   ///< Its name without the ending.
+  std::string path;   ///< Where it lies.
+  std::string shown;  ///< As messages call it.
+  std::string text;   ///< Its whole text.
+};
+
+class BehaviorScripts : public std::enable_shared_from_this<BehaviorScripts> {
+ public:
+  /// Context and Vm are there until close().
+  explicit BehaviorScripts(ScriptContext& context) : context_(&context) {}
+
+  void open(Vm& vm) { vm_ = &vm; }
+  /// The Vm goes: behaviours that still hang on it do nothing from now on.
+  void close();
+
+  /// The files of this run, in the order in which they were loaded.
+  std::span<const BehaviorFile> files() const { return files_; }
+  /// Whether the run has loaded a type of that name, by the naming rule.
+  bool knows(std::string_view type) const;
+  /// Reads the file of a type; its number among the files. Errors list every place that was looked at.
+  Result<std::int32_t> read(std::string_view type);
+  /// A file that did not load is none of the run's.
+  void forget(std::int32_t file);
+  BehaviorFile& file(std::int32_t number) { return files_[static_cast<std::size_t>(number)]; }
+  /// Adds the type of a file to the world's, with these parameters.
+  Result<std::shared_ptr<const BehaviorType>> declare(std::int32_t file, std::string doc, bool is_group,
+                                                      std::vector<Row> parameters);
+  /// The generator that `rng` and math.random draw from in a file's functions.
+  Random& generator(std::int32_t file);
+  /// With the bits of the files' generators.
+  std::uint64_t hash(std::uint64_t start) const;
+
+  // Calls of one instance, by its number in the Vm; a fault without text: it went well.
+  /// Introduces a behaviour to the Vm: its number there, 0 when the Vm is gone.
+  std::int32_t make(const Behavior& behavior, std::int32_t file);
+  BehaviorFault start(std::int32_t number);
+  BehaviorFault step(std::int32_t number, double dt);
+  /// Gives the instance the state of an older one; `migrate`: through the function of that name, if the file has it.
+  BehaviorFault restore(std::int32_t number, std::string_view state, bool migrate);
+  /// Its `state` as text, for another Vm. The error names the key that holds what can't be kept.
+  Result<std::string> state(std::int32_t number);
+  /// The instance is no longer needed.
+  void drop(std::int32_t number);
+
+ private:
+  struct Generator {
+    Random random;
+    std::uint64_t seed = 0;
+    bool seeded = false;
+  };
+  template <class Call>
+  BehaviorFault inside(Call call);
+
+  ScriptContext* context_;
+  Vm* vm_ = nullptr;
+  std::vector<BehaviorFile> files_;
+  std::vector<Generator> generators_;  // one a file
+  std::vector<std::int32_t> dropped_;  // not told to the Vm yet
+};
+
+}  // namespace limber

@@ -1,0 +1,259 @@
+// Guarded calls. How compiled loops are stopped: LuaJIT as Debian builds it does not look at hooks there, but its
+// profiler, once started in the mode 'l', puts a look at one flag into each of them. Raising that flag makes compiled
+// code leave to the interpreter, and a hook that counts to one raises the error there, again and again, until the call
+// has ended.
+#include "script/guard.h"
+
+#include <algorithm>
+#include <atomic>
+#include <cstring>
+#include <utility>
+
+#include <fmt/format.h>
+#include <signal.h>
+#include <sys/time.h>
+
+#include <lua.hpp>
+
+#include "base/check.h"
+#include "script/context.h"
+
+namespace limber {
+
+namespace {
+
+constexpr std::int64_t kMillisecond = 1'000'000;
+// calls must be noticed this soon after they begin, as a part of their budget; at most every 4 ms
+std::int64_t poll_of(const ScriptLimits& limits) {
+  return std::clamp(static_cast<std::int64_t>(limits.call_ms * kMillisecond / 10), std::int64_t{200'000},
+                    4 * kMillisecond);
+}
+
+thread_local Guard* running_here = nullptr;
+
+// the profiler is one for the whole process: who has it is live
+std::atomic<Guard*> live_guard{nullptr};
+void (*leave_compiled_code)(int) = nullptr;  // the profiler's signal handler: raises the flag
+
+void no_profile(void*, lua_State*, int, int) {}
+
+int raise(lua_State* state) { return lua_error(state); }
+
+}  // namespace
+
+Guard::Guard(lua_State* state, ScriptContext& context, const ScriptLimits& limits)
+    : state_(state),
+      context_(context),
+      limits_(limits),
+      memory_(
+          limits.memory, [](void* guard) { static_cast<Guard*>(guard)->stop(Reason::memory); }, this),
+      watchdog_(Watchdog::instance()) {
+  memory_.attach(state_);
+  watch_.owner = this;
+  watch_.stop = [](Watch& watch) { static_cast<Guard*>(watch.owner)->stop(Reason::time); };
+  watchdog_->add(watch_, poll_of(limits));
+  luaJIT_setmode(state_, 0, LUAJIT_MODE_ENGINE | LUAJIT_MODE_OFF);
+}
+
+Guard::~Guard() {
+  watchdog_->remove(watch_);
+  disarm();
+  memory_.detach(state_);
+}
+
+void Guard::use(int handler, int stopped_fault, int failed) {
+  handler_ = handler;
+  stopped_fault_ = stopped_fault;
+  failed_ = failed;
+}
+
+bool Guard::arm() {
+  if (live_) return true;
+  Guard* nobody = nullptr;
+  if (!live_guard.compare_exchange_strong(nobody, this)) return false;
+  luaJIT_profile_start(state_, "li1000000000", no_profile, nullptr);
+  // only its handler is wanted, not its clock
+  struct sigaction profiler {};
+  sigaction(SIGPROF, nullptr, &profiler);
+  leave_compiled_code = profiler.sa_handler;
+  const itimerval never{};
+  setitimer(ITIMER_PROF, &never, nullptr);
+  signal(SIGPROF, SIG_IGN);
+  luaJIT_setmode(state_, 0, LUAJIT_MODE_ENGINE | LUAJIT_MODE_ON);
+  live_ = true;
+  return true;
+}
+
+void Guard::disarm() {
+  if (!live_) return;
+  live_ = false;
+  luaJIT_profile_stop(state_);
+  luaJIT_setmode(state_, 0, LUAJIT_MODE_ENGINE | LUAJIT_MODE_OFF);
+  live_guard = nullptr;
+}
+
+bool Guard::call(int arguments, int results, Kind kind) {
+  const bool outermost = !running_;
+  LIMBER_CHECK(outermost);
+  lua_State* const L = state_;
+  if (!outermost) {
+    lua_settop(L, lua_gettop(L) - arguments - 1);
+    fault_ = {"", 0, "a guarded call inside another", false};
+    return false;
+  }
+  // the function once more, for faults that come without a place, and the message handler
+  const int function = lua_gettop(L) - arguments;
+  lua_pushvalue(L, function);
+  lua_insert(L, function);
+  lua_rawgeti(L, LUA_REGISTRYINDEX, handler_);
+  lua_insert(L, function + 1);
+  begin(kind);
+  const int status = lua_pcall(L, arguments, results, function + 1);
+  end();
+  const bool good = status == 0 && !fired_;
+  if (good) {
+    lua_remove(L, function + 1);
+    lua_remove(L, function);
+  } else {
+    take_fault(status, function);
+    lua_settop(L, function - 1);
+    lua_rawgeti(L, LUA_REGISTRYINDEX, failed_);
+    lua_pcall(L, 0, 0, 0);
+    lua_settop(L, function - 1);
+  }
+  if (kind == Kind::call) context_.end_call(good);
+  return good;
+}
+
+void Guard::begin(Kind kind) {
+  kind_ = kind;
+  running_ = true;
+  fired_ = false;
+  hooked_ = false;
+  reason_ = Reason::none;
+  if (kind == Kind::call) context_.begin_call();
+  memory_.begin_call();
+  running_here = this;
+  const double budget = kind == Kind::call ? limits_.call_ms : limits_.run_ms;
+  watch_.begin(static_cast<std::int64_t>(budget * kMillisecond));
+}
+
+void Guard::end() {
+  watch_.end();
+  memory_.end_call();
+  running_here = nullptr;
+  running_ = false;
+  if (!hooked_) return;
+  lua_sethook(state_, nullptr, 0, 0);
+  heal();
+}
+
+// In the middle of anything: signal handler or allocator. The hook is set anew, since LuaJIT's table of instructions
+// may have been caught half changed.
+#if defined(__GNUC__)
+__attribute__((no_sanitize("thread")))
+#endif
+void Guard::stop(Reason reason) {
+  if (reason_ == Reason::none) reason_ = reason;
+  hooked_ = true;
+  lua_sethook(state_, nullptr, 0, 0);
+  lua_sethook(state_, &Guard::on_hook, LUA_MASKCOUNT, 1);
+  if (live_) leave_compiled_code(SIGPROF);
+}
+
+// what scripts catch of it is raised again at their next instruction
+void Guard::on_hook(lua_State* state, lua_Debug*) {
+  Guard* const guard = running_here;
+  if (guard == nullptr || guard->reason_ == Reason::none) {
+    lua_sethook(state, nullptr, 0, 0);
+    return;
+  }
+  if (!std::exchange(guard->fired_, true)) guard->note_place(state);
+  lua_pushliteral(state, "stopped");
+  lua_error(state);
+}
+
+void Guard::note_place(lua_State* state) {
+  stop_file_[0] = 0;
+  stop_line_ = 0;
+  if (!place_of(state) && state != state_) place_of(state_);
+}
+
+// the nearest script: its source's name begins with @, those of the prelude do not
+bool Guard::place_of(lua_State* state) {
+  lua_Debug at{};
+  for (int level = 0; level < 250 && lua_getstack(state, level, &at) != 0; level++) {
+    lua_getinfo(state, "Sl", &at);
+    if (at.source[0] != '@' || at.currentline <= 0) continue;
+    std::strncpy(stop_file_, at.source + 1, sizeof stop_file_ - 1);
+    stop_line_ = at.currentline;
+    return true;
+  }
+  return false;
+}
+
+std::string Guard::stop_text() const {
+  if (reason_ == Reason::memory) {
+    return fmt::format(
+        "stopped: scripts may hold {} MB together, 16 MB in one piece; keep less, and let go (= nil) of what is no "
+        "longer needed",
+        limits_.memory >> 20u);
+  }
+  if (kind_ == Kind::run) {
+    return fmt::format("stopped after {:g} s of computing; look for a loop without an end", limits_.run_ms / 1000);
+  }
+  return fmt::format(
+      "stopped after {:g} ms of computing; look for a loop without an end, or spread the work over several steps",
+      limits_.call_ms);
+}
+
+// A hook that was left by an error may leave its mark in the state, and no later script could be stopped then; an error
+// that ends a coroutine takes the mark away.
+void Guard::heal() {
+  lua_State* const thread = lua_newthread(state_);
+  lua_pushcfunction(thread, raise);
+  lua_pushnil(thread);
+  lua_resume(thread, 1);
+  lua_pop(state_, 1);
+}
+
+void Guard::take_fault(int status, int function) {
+  lua_State* const L = state_;
+  if (reason_ == Reason::memory) memory_stop_ = true;
+  fault_ = {};
+  fault_.stopped = fired_;
+  if (fired_ && (status == 0 || !lua_istable(L, -1))) {
+    lua_rawgeti(L, LUA_REGISTRYINDEX, stopped_fault_);
+    lua_pcall(L, 0, 1, 0);
+  }
+  const auto text_at_top = [&] {
+    std::size_t length = 0;
+    const char* const text = lua_tolstring(L, -1, &length);
+    return text == nullptr ? std::string() : std::string(text, length);
+  };
+  if (lua_istable(L, -1)) {
+    const int table = lua_gettop(L);
+    lua_getfield(L, table, "line");
+    fault_.line = static_cast<int>(lua_tointeger(L, -1));
+    lua_getfield(L, table, "file");
+    fault_.file = text_at_top();
+    lua_getfield(L, table, "text");
+  }
+  fault_.text = text_at_top();
+  if (fault_.text.empty()) fault_.text = "an error without text";
+  if (fault_.line == 0) place_at_function(function);
+}
+
+// A function that ended in a call of ours has left the stack, and LuaJIT tells no place when it finds no room: then it
+// is where the called function begins.
+void Guard::place_at_function(int function) {
+  lua_Debug at{};
+  lua_pushvalue(state_, function);
+  lua_getinfo(state_, ">S", &at);
+  if (at.source[0] != '@') return;
+  fault_.file = at.source + 1;
+  fault_.line = at.linedefined;
+  fault_.text = fmt::format("{}:{}: {}", fault_.file, fault_.line, fault_.text);
+}
+
+}  // namespace limber

@@ -1,0 +1,104 @@
+// Guard: calls scripts' code so that nothing it does harms the show. What errs, computes too long or eats memory is
+// stopped, what it had done to the world is taken back, and the fault says where. [sim]
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <string_view>
+#include <utility>
+
+#include "script/limits.h"
+#include "script/memory.h"
+#include "script/watchdog.h"
+
+struct lua_Debug;
+struct lua_State;
+
+namespace limber {
+
+struct ScriptContext;
+
+/// Why a call failed, as a person reads it.
+struct ScriptFault {
+  std::string file;
+  int line = 0;
+  std::string text;      ///< "file:line: what", the source line, the traceback.
+  bool stopped = false;  ///< By the guard, for time or memory; else it erred by itself.
+};
+
+class Guard {
+ public:
+  enum class Kind : std::uint8_t {
+    call,  ///< A callback, a handler, a step of a behavior: its budget is ScriptLimits::call_ms; taken back on failure.
+    run,   ///< A scene's top level: run_ms; nothing is taken back, since a scene whose run fails is thrown away.
+  };
+
+  Guard(lua_State* state, ScriptContext& context, const ScriptLimits& limits);
+  ~Guard();
+  Guard(const Guard&) = delete;
+  Guard& operator=(const Guard&) = delete;
+
+  /// Calls the function that lies below its `arguments` on the stack, as lua_pcall does, on the state's main thread.
+  /// True: `results` values lie there instead. False: nothing does, and fault() tells why; what the call had written
+  /// is taken back, what it wanted to send is not sent. Not from inside another guarded call.
+  bool call(int arguments, int results, Kind kind = Kind::call);
+  const ScriptFault& fault() const { return fault_; }
+
+  /// Registry references of functions of the prelude: the message handler; the fault of a call that was stopped
+  /// without an error coming out; what is to be done after a failure.
+  void use(int handler, int stopped_fault, int failed);
+
+  VmMode mode() const { return live_ ? VmMode::live : VmMode::draft; }
+  /// Draft to live: false while another state of the process is live. Compiled code is forgotten.
+  bool arm();
+  /// Live to draft.
+  void disarm();
+
+  // what the prelude asks in the middle of a call
+  bool stopped() const { return fired_; }
+  /// Whether native code that works on for long should end: the call is going to be stopped.
+  bool stop_asked() { return reason_ != Reason::none || watch_.stop_asked(); }
+  std::string_view stop_file() const { return stop_file_; }
+  int stop_line() const { return stop_line_; }
+  std::string stop_text() const;
+  /// Whether a call was stopped for memory since the last time that this was asked.
+  bool take_memory_stop() { return std::exchange(memory_stop_, false); }
+  const Memory& memory() const { return memory_; }
+
+ private:
+  enum class Reason : std::uint8_t { none, time, memory };
+  void begin(Kind kind);
+  void end();
+  void stop(Reason reason);
+  void heal();
+  void take_fault(int status, int function);
+  void place_at_function(int function);
+  void note_place(lua_State* state);
+  bool place_of(lua_State* state);
+  static void on_hook(lua_State* state, lua_Debug* at);
+
+  lua_State* state_;
+  ScriptContext& context_;
+  ScriptLimits limits_;
+  Memory memory_;
+  Watch watch_;
+  std::shared_ptr<Watchdog> watchdog_;
+  ScriptFault fault_;
+  int handler_ = -1;
+  int stopped_fault_ = -1;
+  int failed_ = -1;
+  Kind kind_ = Kind::call;
+  bool live_ = false;
+  bool running_ = false;
+  bool memory_stop_ = false;
+  // written from the signal too
+  volatile bool hooked_ = false;
+  volatile Reason reason_ = Reason::none;
+  // where the stop met the script
+  bool fired_ = false;
+  int stop_line_ = 0;
+  char stop_file_[256] = {};
+};
+
+}  // namespace limber

@@ -1,0 +1,35 @@
+// ScriptLimits: how much time and memory scripts may take before they are stopped; and how a Lua state runs.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+
+namespace limber {
+
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+#define LIMBER_SANITIZED 1
+#elif defined(__has_feature)
+#if __has_feature(address_sanitizer) || __has_feature(thread_sanitizer)
+#define LIMBER_SANITIZED 1
+#endif
+#endif
+
+#ifdef LIMBER_SANITIZED
+inline constexpr double kBudgetScale = 10;  ///< Sanitizers slow our side of the door by about that.
+#else
+inline constexpr double kBudgetScale = 1;
+#endif
+
+/// How a Lua state runs. Only one in the process can be live: compiled code is stopped through LuaJIT's profiler.
+enum class VmMode : std::uint8_t {
+  draft,  ///< Interpreted only.
+  live,   ///< Compiled while it runs.
+};
+
+struct ScriptLimits {
+  double call_ms = 50 * kBudgetScale;           ///< CPU time of one callback, handler, or step of a behavior.
+  double run_ms = 5000 * kBudgetScale;          ///< CPU time of a scene's top level.
+  std::size_t memory = std::size_t{64} << 20u;  ///< Bytes that all scripts together may hold.
+};
+
+}  // namespace limber

@@ -1,0 +1,65 @@
+// From the world's calls to the script's functions.
+#include "script/lua_behavior.h"
+
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "base/log.h"
+#include "sim/body.h"
+
+namespace limber {
+
+LuaBehavior::LuaBehavior(std::shared_ptr<BehaviorScripts> scripts, std::int32_t file)
+    : scripts_(std::move(scripts)), file_(file) {}
+
+LuaBehavior::~LuaBehavior() {
+  if (number_ != 0) scripts_->drop(number_);
+}
+
+bool LuaBehavior::well(BehaviorFault fault) {
+  if (fault.text.empty()) return true;
+  fail(std::move(fault));
+  return false;
+}
+
+// known to the Vm, with the state that it has inherited
+bool LuaBehavior::ready() {
+  if (number_ == 0) number_ = scripts_->make(*this, file_);
+  if (number_ == 0) return false;
+  if (!inherited_) return true;
+  const Inheritance given = *std::exchange(inherited_, std::nullopt);
+  return well(scripts_->restore(number_, given.state, given.from != file().text));
+}
+
+void LuaBehavior::start() {
+  started_ = false;
+  if (ready()) started_ = well(scripts_->start(number_));
+}
+
+void LuaBehavior::step(double dt) {
+  // one that failed in its start tries that again first
+  if (!started_) start();
+  if (started_ && ready()) well(scripts_->step(number_, dt));
+}
+
+void LuaBehavior::take_over(Behavior& before) {
+  auto* const old = dynamic_cast<LuaBehavior*>(&before);
+  if (old == nullptr) return;
+  started_ = old->started_;
+  if (old->inherited_) {
+    inherited_ = std::move(old->inherited_);
+  } else if (old->number_ != 0) {
+    Result<std::string> kept = old->state();
+    if (kept) {
+      inherited_ = {std::move(*kept), old->file().text};
+    } else {
+      started_ = false;
+      log_warning("behavior '{}/{}' begins anew: {}", body().name(), name(), kept.error());
+    }
+  }
+}
+
+Result<std::string> LuaBehavior::state() const { return scripts_->state(number_); }
+
+}  // namespace limber

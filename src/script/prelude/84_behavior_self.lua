@@ -1,0 +1,192 @@
+-- `self` of a behaviour written in Lua: a handle of a class of its type's, with the type's parameters and what every
+-- behaviour has; and the calls of its functions.
+local P = ...
+local ffi, api, ctx, answer = P.ffi, P.api, P.ctx, P.answer
+local fail, describe, istype = P.fail, P.describe, P.ffi.istype
+local native_ipairs = ipairs
+
+local instances = {}  -- by number: handle, type, state, lists
+local free = {}
+local kinds = { parts = 1, joints = 2, motors = 3 }
+
+local function instance_of(h) return instances[h.number_] or P.gone(h) end
+
+-- Lists of `self`: what they hold is gathered when it is asked for and kept until start() is called again.
+local S = ffi.typeof("struct { const int32_t number_; }")
+local lists, list_names = {}, {}
+P.S = S
+
+local function gather(h, kind)
+  local items = {}
+  local count = api.behavior_item(ctx, h.slot_, h.generation_, kind, -1)
+  if count < 0 then P.gone(h) end
+  for i = 0, count - 1 do
+    api.behavior_item(ctx, h.slot_, h.generation_, kind, i)
+    items[i + 1] = P.thing(answer.slot, answer.generation)
+  end
+  return items
+end
+
+local function items_of(list) return lists[list.number_] or fail("this list is out of date: take it from self anew") end
+
+local function next_item(list, i)
+  i = i + 1
+  local item = lists[list.number_][i]
+  if item then return i, item end
+end
+
+ffi.metatype(S, {
+  __index = function(list, key)
+    if type(key) == "number" then return items_of(list)[key] end
+    fail("a list of %s has no member '%s'; an entry is found by a number in [ ]", list_names[list.number_], tostring(key))
+  end,
+  __newindex = function(list) fail("the list of %s can't be changed by hand", list_names[list.number_]) end,
+  __len = function(list) return #items_of(list) end,
+  __call = function(list)
+    fail("%s is a list, no function: for i, x in ipairs(self.%s) do", list_names[list.number_], list_names[list.number_])
+  end,
+  __tostring = function(list) return "list of " .. list_names[list.number_] end,
+})
+
+local ipairs_of_things = P.ipairs
+function P.ipairs(t)
+  if istype(S, t) then return next_item, t, 0 end
+  return ipairs_of_things(t)
+end
+
+local function keep_list(instance, name, items)
+  local number = #free > 0 and table.remove(free) or #lists + 1
+  lists[number], list_names[number] = items, name
+  instance[name] = S(number)
+  return instance[name]
+end
+
+local function drop_list(instance, name)
+  if not instance[name] then return end
+  local number = instance[name].number_
+  lists[number], free[#free + 1], instance[name] = {}, number, nil
+end
+
+local function drop_lists(instance)
+  for name in pairs(kinds) do drop_list(instance, name) end
+  drop_list(instance, "neighbor_parts")
+end
+
+-- a group's neighbours come and go without a start of its members
+local function neighbor_parts(h)
+  local instance, version = instance_of(h), api.structure(ctx)
+  if not instance.neighbor_parts or instance.structure ~= version then
+    drop_list(instance, "neighbor_parts")
+    keep_list(instance, "neighbor_parts", P.neighbor_parts(h, instance.body))
+    instance.structure = version
+  end
+  return instance.neighbor_parts
+end
+
+function P.empty_list() return keep_list({}, "warm", {}) end
+
+-- what every `self` has beside its parameters
+local getters = {
+  name = function(h) return P.names[instance_of(h).handle] end,
+  type = function(h) return instance_of(h).type.name end,
+  body = function(h) return instance_of(h).body end,
+  state = function(h) return instance_of(h).state end,
+  rng = function(h) return instance_of(h).rng end,
+  time = function() return P.sim.time end,
+  alive = function(h) return P.alive(h) end,
+}
+for name in pairs(kinds) do
+  getters[name] = function(h)
+    local instance = instance_of(h)
+    return instance[name] or keep_list(instance, name, gather(h, kinds[name]))
+  end
+end
+
+local setters = {
+  state = function(h, value)
+    if type(value) ~= "table" then fail("%s: state is a table, not %s", P.label(h), describe(value)) end
+    instance_of(h).state = value
+  end,
+}
+
+local function no_interval(h, class, name)
+  local row = class.rows[name]
+  if row then fail("%s: '%s' is no number of milliseconds; due takes the name of a number", P.label(h), name) end
+  local names = {}
+  for _, key in native_ipairs(P.sorted_keys(class.setters)) do
+    if class.rows[key] and class.rows[key].type == 0 then names[#names + 1] = key end
+  end
+  fail("%s: due takes the name of a parameter in quotes, not %s%s", P.label(h), describe(name), P.hint(name, names))
+end
+
+-- the class of a type's handles
+function P.make_self(of)
+  local ctype = ffi.typeof("struct { const int32_t slot_, generation_, number_; }")
+  local class = { name = "behavior", table = of.table, ctype = ctype, getters = {}, setters = {}, methods = {}, rows = {} }
+  P.add_handles(class)
+  P.derive(class)
+  class.methods.remove = nil
+  local intervals = {}  -- rows by name, for due
+  for name, row in pairs(class.rows) do
+    if row.type == 0 and class.setters[name] then intervals[name] = row.index end
+  end
+  for name, get in pairs(getters) do class.getters[name] = get end
+  for name, set in pairs(setters) do class.setters[name] = set end
+  function class.methods.due(h, name)
+    if not istype(ctype, h) then P.check_self(h, class, "due") end
+    local row = intervals[name] or no_interval(h, class, name)
+    local due = api.behavior_due(ctx, h.slot_, h.generation_, row)
+    if due < 0 then P.gone(h) end
+    return due == 1
+  end
+  if of.is_group then
+    P.neighbor_members(class)
+    class.getters.neighbor_parts = neighbor_parts
+  end
+  P.finish(class)
+  of.class = class
+end
+
+-- What C++ calls: each start, step and migrate is a guarded call of its own, with functions and handles from these
+-- tables, by the number of the instance.
+local entry = P.entry
+local selfs, starts, steps, migrates = {}, {}, {}, {}
+entry.behavior_self, entry.behavior_start, entry.behavior_step, entry.behavior_migrate = selfs, starts, steps, migrates
+
+function entry.make_behavior(file, slot, generation)
+  local of = P.behavior_types[file]
+  local number = #instances + 1
+  local h = of.class.ctype(slot, generation, number)
+  api.name(ctx, slot, generation)
+  local name = P.text()
+  api.behavior_body(ctx, slot, generation)
+  local body = P.answered()
+  P.introduce(h, name, body)
+  instances[number] = { handle = h, type = of, body = body, state = {}, rng = P.R(slot, generation) }
+  selfs[number], starts[number], steps[number], migrates[number] = h, of.start, of.step, of.migrate
+  return number
+end
+
+-- what it acts on may have changed
+function entry.renew_behavior(number) drop_lists(instances[number]) end
+
+-- takes a state, as text or as what migrate gave: the state, or nothing and what is wrong
+function entry.restore_behavior(number, state)
+  local instance = instances[number]
+  if type(state) == "string" then state = P.plain_value(state) end
+  if type(state) ~= "table" then
+    return nil, string.format("%s: %s: migrate returns the new state, a table, not %s", instance.type.shown,
+      P.label(instance.handle), describe(state))
+  end
+  instance.state = state
+  return state
+end
+
+function entry.behavior_state(number)
+  return P.plain_text(instances[number].state, "state")
+end
+
+function entry.drop_behavior(number)
+  drop_lists(instances[number])
+  instances[number], selfs[number], steps[number] = false, false, false
+end

@@ -1,0 +1,225 @@
+-- `string` as scripts see it: patterns whose matcher can be stopped, texts of a bounded size, no addresses in texts.
+local P = ...
+local ffi, api, ctx, fail, describe = P.ffi, P.api, P.ctx, P.fail, P.describe
+local native, floor, huge = string, math.floor, math.huge
+local sub, byte, getmetatable = string.sub, string.byte, debug.getmetatable
+local match = api.match(ctx)
+
+local kLong = 4 * 2 ^ 20  -- what walks a whole text in C takes up to that many bytes
+
+local text_of = tostring
+local function want_text(value, what)
+  if type(value) == "string" then return value end
+  if type(value) == "number" then return text_of(value) end
+  fail("string.%s takes text, not %s", what, describe(value))
+end
+local function want_short(value, what)
+  value = want_text(value, what)
+  if #value > kLong then fail("string.%s takes texts of up to 4 MB", what) end
+  return value
+end
+local function want_integer(value, missing, what)
+  if value == nil then return missing end
+  local number = tonumber(value)
+  if not number then fail("string.%s takes a number there, not %s", what, describe(value)) end
+  if number ~= number then return 0 end
+  number = math.max(-2 ^ 31, math.min(2 ^ 31 - 1, number))
+  return number < 0 and -floor(-number) or floor(number)
+end
+
+-- tables, functions and coroutines have no address in texts: it would differ from run to run
+function P.show(value)
+  local kind = type(value)
+  if kind == "table" then
+    local meta = getmetatable(value)
+    return type(meta) == "table" and rawget(meta, "__tostring") and text_of(value) or "table"
+  end
+  if kind == "function" or kind == "thread" or kind == "userdata" then return kind end
+  return text_of(value)
+end
+local show = P.show
+
+-- the captures of the last match, from the i-th on
+local function capture(text, i)
+  local length = match.length[i]
+  if length == -2 then return match.from[i] + 1 end
+  if length == -1 then fail("unfinished capture") end
+  return sub(text, match.from[i] + 1, match.from[i] + length)
+end
+local function captures(text, i, count)
+  if i == count - 1 then return capture(text, i) end
+  return capture(text, i), captures(text, i + 1, count)
+end
+local function whole_or_captures(text)
+  if match.count == 0 then return sub(text, match.start + 1, match["end"]) end
+  return captures(text, 0, match.count)
+end
+
+local function search(text, pattern, from, anchors, what)
+  local found = api.find_match(ctx, text, #text, pattern, #pattern, from, anchors)
+  if found < 0 then fail("string.%s: %s", what, P.text()) end
+  return found == 1
+end
+
+local function start_of(text, init, what)
+  init = want_integer(init, 1, what)
+  if init < 0 then init = init + #text else init = init - 1 end
+  return math.max(0, math.min(#text, init))
+end
+
+-- the characters by which LuaJIT tells a pattern
+local function is_pattern(pattern) return native.find(pattern, "[%^%$%*%+%?%.%(%[%%%-]") ~= nil end
+
+local S = {}
+
+function S.find(text, pattern, init, plain)
+  text, pattern = want_text(text, "find"), want_text(pattern, "find")
+  local from = start_of(text, init, "find")
+  if plain or not is_pattern(pattern) then
+    local at = api.find_plain(ctx, text, #text, pattern, #pattern, from)
+    if at < 0 then return nil end
+    return at + 1, at + #pattern
+  end
+  if not search(text, pattern, from, 1, "find") then return nil end
+  local first, last = match.start + 1, match["end"]
+  if match.count == 0 then return first, last end
+  return first, last, captures(text, 0, match.count)
+end
+
+function S.match(text, pattern, init)
+  text, pattern = want_text(text, "match"), want_text(pattern, "match")
+  if not search(text, pattern, start_of(text, init, "match"), 1, "match") then return nil end
+  return whole_or_captures(text)
+end
+
+function S.gmatch(text, pattern)
+  text, pattern = want_text(text, "gmatch"), want_text(pattern, "gmatch")
+  local from = 0
+  return function()
+    if from > #text or not search(text, pattern, from, 0, "gmatch") then return nil end
+    from = match["end"]
+    if from == match.start then from = from + 1 end
+    return whole_or_captures(text)
+  end
+end
+
+-- what a replacing text with % stands for
+local function expand(replacement, text)
+  local pieces, i = {}, 1
+  while i <= #replacement do
+    local c = byte(replacement, i)
+    if c ~= 37 then
+      local stop = native.find(replacement, "%", i, true) or #replacement + 1
+      pieces[#pieces + 1] = sub(replacement, i, stop - 1)
+      i = stop
+    else
+      c = byte(replacement, i + 1)
+      if c == 48 then
+        pieces[#pieces + 1] = sub(text, match.start + 1, match["end"])
+      elseif c and c > 48 and c <= 57 then
+        local wanted = c - 49
+        if wanted > 0 and wanted >= match.count then fail("string.gsub: invalid capture index") end
+        pieces[#pieces + 1] = wanted >= match.count and sub(text, match.start + 1, match["end"]) or
+          capture(text, wanted)
+      else
+        pieces[#pieces + 1] = c and native.char(c) or "\0"
+      end
+      i = i + 2
+    end
+  end
+  return table.concat(pieces)
+end
+
+local function replaced(kind, replacement, text)
+  if kind == "string" then return expand(replacement, text) end
+  local start, stop = match.start, match["end"]  -- what is called may search itself
+  local value
+  if kind == "table" then
+    value = replacement[match.count == 0 and sub(text, start + 1, stop) or capture(text, 0)]
+  else
+    value = replacement(whole_or_captures(text))
+  end
+  if not value then return sub(text, start + 1, stop) end
+  if type(value) ~= "string" and type(value) ~= "number" then
+    fail("string.gsub: invalid replacement value (a %s)", type(value))
+  end
+  return value
+end
+
+function S.gsub(text, pattern, replacement, most)
+  text, pattern = want_text(text, "gsub"), want_text(pattern, "gsub")
+  local kind = type(replacement)
+  if kind == "number" then kind, replacement = "string", text_of(replacement) end
+  if kind ~= "string" and kind ~= "table" and kind ~= "function" then
+    fail("string.gsub replaces by text, a table or a function, not %s", describe(replacement))
+  end
+  if kind == "string" and not native.find(replacement, "%", 1, true) then kind = "plain" end
+  most = want_integer(most, #text + 1, "gsub")
+  local pieces, copied, from, count = {}, 0, 0, 0
+  while count < most and from <= #text and search(text, pattern, from, 1, "gsub") do
+    local start, stop = match.start, match["end"]
+    count = count + 1
+    if start > copied then pieces[#pieces + 1] = sub(text, copied + 1, start) end
+    pieces[#pieces + 1] = kind == "plain" and replacement or replaced(kind, replacement, text)
+    copied = stop
+    from = stop > start and stop or stop + 1
+    if byte(pattern, 1) == 94 then break end
+  end
+  if count == 0 then return text, 0 end
+  pieces[#pieces + 1] = sub(text, copied + 1)
+  return table.concat(pieces), count
+end
+
+local function plain(...)
+  for i = 1, select("#", ...) do
+    local kind = type((select(i, ...)))
+    if kind ~= "number" and kind ~= "string" and kind ~= "boolean" and kind ~= "nil" then return false end
+  end
+  return true
+end
+local function check_format(text, ...)
+  if native.find(text, "%%[^%%%a]*p") then
+    fail("string.format: %p tells an address, which differs in each run")
+  end
+  for i = 1, select("#", ...) do
+    local value = select(i, ...)
+    if type(value) == "string" then want_short(value, "format") end
+  end
+end
+function S.format(text, ...)
+  text = want_short(text, "format")
+  check_format(text, ...)
+  if plain(...) then return native.format(text, ...) end
+  local values, n = { ... }, select("#", ...)
+  for i = 1, n do
+    if not plain(values[i]) then values[i] = show(values[i]) end
+  end
+  return native.format(text, unpack(values, 1, n))
+end
+
+function S.rep(text, count, separator)
+  text, count = want_text(text, "rep"), want_integer(count, 0, "rep")
+  separator = separator ~= nil and want_text(separator, "rep") or ""
+  if count <= 0 or #text + #separator == 0 then return "" end
+  if (#text + #separator) * count > 8 * 2 ^ 20 then
+    fail("string.rep makes texts of up to 8 MB, not %.0f bytes", (#text + #separator) * count)
+  end
+  if separator == "" then return native.rep(text, count) end
+  return native.rep(text, count, separator)
+end
+
+for _, name in ipairs { "lower", "upper", "reverse" } do
+  local f = native[name]
+  S[name] = function(text) return f(want_short(text, name)) end
+end
+
+-- tables of their own, so that nobody spoils another's
+function P.make_string()
+  local t = { byte = native.byte, char = native.char, len = native.len, sub = native.sub }
+  for name, f in pairs(S) do t[name] = f end
+  return t
+end
+
+-- ("x"):upper() finds a table of its own
+local meta = getmetatable("")
+meta.__index, meta.__metatable = P.make_string(), "string"

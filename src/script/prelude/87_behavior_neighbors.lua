@@ -1,0 +1,71 @@
+-- Neighbours: what the `self` of a group's member has beside that of others. A walk over them reads what the world's
+-- grid found, without a call for each.
+local P = ...
+local ffi, api, ctx, answer, istype = P.ffi, P.api, P.ctx, P.answer, P.ffi.istype
+local fail, describe, thing, V = P.fail, P.describe, P.thing, P.V
+
+local part = P.classes.part.ctype
+local W = ffi.typeof("struct { const int32_t walk_, serial_; }")
+local walks = api.walks(ctx)
+local kWalks = 16  -- one inside the other; as in context.h
+local last = 0
+
+-- handles of the parts that a group looks at, by the slot of its node, until the structure of the world changes
+local sets = {}
+local handles_of = {}  -- by walk
+
+local function gather(h, group, version)
+  local handles = {}
+  for i = 0, api.neighbor_part(ctx, h.slot_, h.generation_, -1) - 1 do
+    api.neighbor_part(ctx, h.slot_, h.generation_, i)
+    handles[i + 1] = thing(answer.slot, answer.generation)
+  end
+  sets[group] = { version = version, handles = handles }
+  return handles
+end
+
+local function next_neighbor(w)
+  local walk = walks[w.walk_]
+  if walk.serial ~= w.serial_ then fail("loops over neighbors, more than %d inside each other", kWalks) end
+  local i = walk.at
+  if i >= walk.count then return nil end
+  walk.at = i + 1
+  local n = walk.list[i]
+  return handles_of[w.walk_][n.index + 1], V(n.x, n.y, n.z), n.distance
+end
+
+local function wrong_call(h, class, of, radius)
+  if not istype(class.ctype, h) then P.check_self(h, class, "neighbors") end
+  if not istype(part, of) then fail("%s: neighbors are those of a part, not of %s", P.label(h), describe(of)) end
+  P.slot_of(of)
+  P.want_number(radius, "neighbors: the radius")
+end
+
+function P.neighbor_members(class)
+  local ctype = class.ctype
+  function class.methods.neighbors(h, of, radius)
+    if not (istype(ctype, h) and istype(part, of) and type(radius) == "number" and radius - radius == 0) then
+      wrong_call(h, class, of, radius)
+    end
+    last = last % kWalks + 1
+    local walk = walks[last - 1]
+    if api.neighbors(ctx, h.slot_, h.generation_, of.slot_, of.generation_, radius, last - 1) ~= 0 then
+      wrong_call(h, class, of, radius)
+      P.gone(h)
+    end
+    local set = sets[answer.slot]
+    handles_of[last - 1] = set and set.version == answer.generation and set.handles or
+      gather(h, answer.slot, answer.generation)
+    return next_neighbor, W(last - 1, walk.serial)
+  end
+end
+
+-- those of other bodies
+function P.neighbor_parts(h, body)
+  local group = api.neighbor_part(ctx, h.slot_, h.generation_, -2)
+  local others = {}
+  for _, each in ipairs(gather(h, group, api.structure(ctx))) do
+    if each.body ~= body then others[#others + 1] = each end
+  end
+  return others
+end

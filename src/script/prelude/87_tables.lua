@@ -1,0 +1,169 @@
+-- `table`, `coroutine` and pairs as scripts see them: whatever takes long runs in Lua, where it can be stopped, and
+-- nothing eats the C stack.
+local P = ...
+local api, ctx, istype = P.api, P.ctx, P.ffi.istype
+local fail, describe, floor = P.fail, P.describe, math.floor
+local native = { concat = table.concat, insert = table.insert, maxn = table.maxn, remove = table.remove, pcall = pcall,
+  resume = coroutine.resume, create = coroutine.create }
+
+local function want_table(t, what)
+  if type(t) ~= "table" then fail("%s takes a table, not %s", what, describe(t)) end
+  return t
+end
+
+-- Sorting: short runs by insertion, then runs are merged. Equal ones keep their order; a comparing function that
+-- contradicts itself gives some order; one that errs leaves the table as it was.
+local function ascending(a, b) return a < b end
+local kRun = 8
+local function sort_runs(list, n, before)
+  for start = 1, n, kRun do
+    for i = start + 1, math.min(start + kRun - 1, n) do
+      local value, k = list[i], i - 1
+      while k >= start and before(value, list[k]) do
+        list[k + 1] = list[k]
+        k = k - 1
+      end
+      list[k + 1] = value
+    end
+  end
+end
+local function merge(from, to, left, middle, right, before)
+  local i, k = left, middle
+  for at = left, right - 1 do
+    if i < middle and (k >= right or not before(from[k], from[i])) then
+      to[at] = from[i]
+      i = i + 1
+    else
+      to[at] = from[k]
+      k = k + 1
+    end
+  end
+end
+function P.sort(t, before)
+  want_table(t, "table.sort")
+  if before ~= nil then P.want_function(before, "table.sort") end
+  before = before or ascending
+  local n, list, other = #t, {}, {}
+  for i = 1, n do list[i] = t[i] end
+  sort_runs(list, n, before)
+  local width = kRun
+  while width < n do
+    for left = 1, n, 2 * width do
+      merge(list, other, left, math.min(left + width, n + 1), math.min(left + 2 * width, n + 1), before)
+    end
+    list, other, width = other, list, 2 * width
+  end
+  for i = 1, n do t[i] = list[i] end
+end
+
+local T = { sort = P.sort }
+function T.concat(t, separator, first, last)
+  want_table(t, "table.concat")
+  local ok, text = native.pcall(native.concat, t, separator, first, last)
+  if not ok then fail("table.concat: %s", text) end
+  return text
+end
+-- outside of 1 … #t + 1 it would go through all numbers between
+function T.insert(...)
+  local t, at, value = ...
+  want_table(t, "table.insert")
+  local given = select("#", ...)
+  if given == 2 then return native.insert(t, at) end
+  if given ~= 3 then fail("table.insert takes a table, a place if it is not the end, and a value") end
+  if type(at) ~= "number" or not (at >= 1 and at <= #t + 1) then
+    fail("table.insert: the place is 1 … %d here, not %s", #t + 1, describe(at))
+  end
+  native.insert(t, at, value)
+end
+T.remove, T.maxn = native.remove, native.maxn
+
+-- coroutines inside coroutines eat the C stack
+local depth = 0
+P.on_failure[#P.on_failure + 1] = function() depth = 0 end
+local function leave(...)
+  depth = depth - 1
+  return ...
+end
+local function resume(co, ...)
+  if type(co) ~= "thread" then fail("coroutine.resume takes a coroutine, not %s", describe(co)) end
+  if depth >= 100 then fail("coroutines inside coroutines, 100 deep: that is too deep") end
+  depth = depth + 1
+  return leave(native.resume(co, ...))
+end
+local function unwrap(ok, ...)
+  if not ok then error(..., 0) end
+  return ...
+end
+local function create(f)
+  P.want_function(f, "coroutine.create")
+  return native.create(f)
+end
+local C = { create = create, resume = resume, status = coroutine.status, running = coroutine.running,
+  yield = coroutine.yield }
+function C.wrap(f)
+  local co = create(f)
+  return function(...) return unwrap(resume(co, ...)) end
+end
+
+local function copy(lib)
+  local t = {}
+  for name, f in pairs(lib) do t[name] = f end
+  return t
+end
+function P.make_table() return copy(T) end
+function P.make_coroutine() return copy(C) end
+
+-- pairs in a fixed order: numbers, text by alphabet, false and true, things in stream order
+local function by_order(a, b) return a.order < b.order end
+local function add_things(keys, things)
+  for i, thing in ipairs(things) do
+    things[i] = { thing = thing, order = api.order(ctx, thing.slot_, thing.generation_) }
+  end
+  P.sort(things, by_order)
+  for _, entry in ipairs(things) do keys[#keys + 1] = entry.thing end
+end
+local function gather_keys(t)
+  local numbers, texts, flags, things, sorted, last = {}, {}, {}, {}, true, -math.huge
+  for key in next, t do
+    local kind = type(key)
+    if kind == "number" then
+      numbers[#numbers + 1], sorted, last = key, sorted and key > last, key
+    elseif kind == "string" then
+      texts[#texts + 1] = key
+    elseif kind == "boolean" then
+      flags[key and 2 or 1] = key
+    elseif P.class_of(key) then
+      things[#things + 1] = key
+    else
+      fail("pairs: a key of this table is a %s, which has no place in a fixed order; use numbers, text or things", kind)
+    end
+  end
+  if not sorted then P.sort(numbers) end
+  P.sort(texts)
+  for _, key in ipairs(texts) do numbers[#numbers + 1] = key end
+  for i = 1, 2 do
+    if flags[i] ~= nil then numbers[#numbers + 1] = flags[i] end
+  end
+  if #things > 0 then add_things(numbers, things) end
+  return numbers
+end
+local function next_left(keys, t, i)
+  while keys[i] ~= nil and rawget(t, keys[i]) == nil do i = i + 1 end
+  return i
+end
+local function next_pair(walk)
+  local keys, t, i = walk.keys, walk.t, walk.i + 1
+  local key = keys[i]
+  if key ~= nil and rawget(t, key) == nil then
+    i = next_left(keys, t, i)
+    key = keys[i]
+  end
+  walk.i = i
+  if key == nil then return nil end
+  return key, rawget(t, key)
+end
+function P.pairs(t)
+  if istype(P.L, t) or istype(P.S, t) or istype(P.F, t) then return P.ipairs(t) end
+  if type(t) ~= "table" then fail("pairs takes a table, not %s", describe(t)) end
+  return next_pair, { t = t, keys = gather_keys(t), i = 0 }
+end

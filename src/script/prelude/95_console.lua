@@ -1,0 +1,256 @@
+-- The console: texts that a person gives to the running scene, evaluated in its environment as a callback would be, and
+-- the words that may stand at the end of a half-written one.
+local P = ...
+local api, ctx, load, guarded = P.api, P.ctx, P.load, P.guarded
+local xpcall, pcall, next, type, rawget = xpcall, pcall, next, type, rawget
+local format, istype = string.format, P.ffi.istype
+local getmetatable = debug.getmetatable
+
+-- values as a person reads them: tables are opened, three deep and four hundred values wide
+local kDeep, kWide, kMostKeys = 3, 400, 2000
+local show_value
+
+local function before(a, b)
+  local s, t = type(a), type(b)
+  if s ~= t then return s < t end
+  if s == "number" or s == "string" then return a < b end
+  return P.show(a) < P.show(b)
+end
+
+local function show_key(key)
+  if type(key) == "string" then
+    return key:find("^[%a_][%w_]*$") and key or format("[%q]", key)
+  end
+  return "[" .. P.show(key) .. "]"
+end
+
+local function show_table(t, deep, room)
+  if deep >= kDeep then return "{ … }" end
+  local list, keys, last = {}, {}, 0
+  while rawget(t, last + 1) ~= nil and room.left > 0 do
+    last = last + 1
+    list[last] = show_value(rawget(t, last), deep + 1, room)
+  end
+  for key in next, t do
+    if not (type(key) == "number" and key >= 1 and key <= last and key % 1 == 0) then keys[#keys + 1] = key end
+    if #keys == kMostKeys then break end
+  end
+  table.sort(keys, before)
+  for _, key in ipairs(keys) do
+    if room.left <= 0 then
+      list[#list + 1] = "…"
+      break
+    end
+    list[#list + 1] = show_key(key) .. " = " .. show_value(rawget(t, key), deep + 1, room)
+  end
+  return #list == 0 and "{}" or "{ " .. table.concat(list, ", ") .. " }"
+end
+
+function show_value(value, deep, room)
+  room.left = room.left - 1
+  local kind = type(value)
+  if kind == "string" then return deep == 0 and value or (format("%q", value):gsub("\\\n", "\\n")) end
+  if istype(P.L, value) then return show_table(P.items_of(value), deep, room) end
+  if kind ~= "table" then return P.show(value) end
+  local meta = getmetatable(value)
+  if type(meta) == "table" and rawget(meta, "__tostring") then return P.show(value) end
+  return show_table(value, deep, room)
+end
+
+local function show_all(...)
+  local count = select("#", ...)
+  if count == 0 then return nil end
+  local list = { ... }
+  for i = 1, count do list[i] = show_value(list[i], 0, { left = kWide }) end
+  return table.concat(list, "\t")
+end
+
+-- whether more lines could make a chunk of what Lua can't read
+local function may_go_on(message)
+  return message:find("near '<eof>'", 1, true) and not message:find("unfinished string near", 1, true) and
+    not message:find("'=' expected", 1, true)
+end
+
+-- an expression is read behind a nil: alone it would be a tail call, and an error in it would stand nowhere
+local kExpression = "return nil, "
+local function call_and_show(chunk, skipped) return show_all(select(1 + skipped, chunk())) end
+
+-- kind and text of an Evaluation (base/evaluation.h)
+function P.entry.evaluate(text)
+  if not P.env then return "error", "no scene has run yet" end
+  text = text:gsub("^%s*=", "")
+  P.sources.console = text
+  local chunk, wrong = load(kExpression .. text, "@console", P.env)
+  local skipped = 1
+  if not chunk then
+    skipped = 0
+    local as_value = wrong
+    chunk, wrong = load(text, "@console", P.env)
+    if not chunk then
+      if may_go_on(as_value) or may_go_on(wrong) then return "incomplete", "" end
+      return "error", P.handler(wrong).text
+    end
+  end
+  local result
+  local ended_well = guarded(function() result = call_and_show(chunk, skipped) end)
+  P.sources.console = true -- what it leaves behind may err later, beside another text
+  if not ended_well then
+    api.fault(ctx)
+    return "error", P.text()
+  end
+  return result and "value" or "done", result or ""
+end
+
+-- Completion. A chain such as sim:body("arm").root is followed without running anything of the scene's.
+local lookups = { body = true, find_body = true, part = true, joint = true, motor = true }
+local class_lists = { bodies = true, parts = true, joints = true, motors = true }
+
+local function member_of(value, key)
+  local class = P.class_of(value)
+  if class then
+    local ok, found = pcall(class.getters[key] or error, value)
+    return ok and found or nil
+  end
+  if istype(P.L, value) then return P.items_of(value)[tonumber(key)] end
+  if value == P.params then
+    local ok, found = pcall(function() return value[key] end)
+    return ok and found or nil
+  end
+  return type(value) == "table" and rawget(value, tonumber(key) or key) or nil
+end
+
+local function looked_up(value, name, argument)
+  local class = P.class_of(value)
+  if not (class and lookups[name] and class.methods[name]) then return nil end
+  local ok, found = pcall(class.methods[name], value, tonumber(argument) or argument)
+  return ok and found or nil
+end
+
+-- the thing that a chain leads to, nil when that is not known
+local function follow(chain)
+  local name, rest = chain:match("^([%a_][%w_]*)(.*)$")
+  local value = name and rawget(P.env, name)
+  while value ~= nil and rest ~= "" do
+    local key, after = rest:match("^%.([%a_][%w_]*)(.*)$")
+    if not key then key, after = rest:match("^%[(%d+)%](.*)$") end
+    if key then
+      value, rest = member_of(value, key), after
+    else
+      local method, argument
+      method, argument, after = rest:match("^:([%a_][%w_]*)%(%s*[\"']?([^\"'()]*)[\"']?%s*%)(.*)$")
+      if not method then return nil end
+      value, rest = looked_up(value, method, argument), after
+    end
+  end
+  return value
+end
+
+-- the chain that a text ends with: back over names, dots, colons and whole brackets
+local function chain_at_end(text)
+  local at = #text
+  while at > 0 do
+    local c = text:sub(at, at)
+    if c == ")" or c == "]" then
+      local open = c == ")" and "(" or "["
+      repeat at = at - 1 until at <= 0 or text:sub(at, at) == open
+    elseif not c:find("[%w_.:]") then
+      break
+    end
+    at = at - 1
+  end
+  return text:sub(math.max(at, 0) + 1)
+end
+
+local function add_keys(words, t)
+  for key in next, t do
+    if type(key) == "string" then words[key] = true end
+  end
+end
+
+local function add_members(words, class, separator)
+  add_keys(words, separator == ":" and class.methods or class.getters)
+  if separator ~= ":" then return end
+  for key in next, class.getters do
+    if class_lists[key] then words[key] = true end
+  end
+end
+
+local function members(value, separator)
+  local words, class = {}, P.class_of(value)
+  if class then
+    add_members(words, class, separator)
+  elseif value == P.osc then
+    for _, key in ipairs(P.osc_members) do words[key] = true end
+  elseif value == P.params then
+    add_keys(words, P.parameter_names())
+  elseif type(value) == "cdata" then
+    add_keys(words, P.value_members[tostring(P.ffi.typeof(value)):match("struct (%w+)")] or {})
+  elseif type(value) == "table" then
+    add_keys(words, value)
+  elseif type(value) == "string" then
+    add_keys(words, rawget(P.env, "string") or {})
+  elseif value == nil then
+    -- nobody knows what stands before it: what any thing has
+    for _, each in next, P.classes do add_members(words, each, separator) end
+  end
+  return words
+end
+
+-- the part of a text that stands inside a string that is still open, else nil
+local function open_string(text)
+  local quote, from
+  local i = 1
+  while i <= #text do
+    local c = text:sub(i, i)
+    if quote and c == "\\" then
+      i = i + 1
+    elseif quote and (c == quote or c == "\n") then
+      quote = nil
+    elseif not quote and (c == '"' or c == "'") then
+      quote, from = c, i + 1
+    end
+    i = i + 1
+  end
+  return quote and text:sub(from)
+end
+
+local function living_names()
+  local words = {}
+  local function add(list)
+    for _, item in ipairs(P.items_of(list)) do words[P.names[item]] = true end
+  end
+  for kind = 0, 4, 4 do add(P.list_of(P.sim, kind)) end
+  for _, body in ipairs(P.items_of(P.list_of(P.sim, 0))) do
+    for kind = 1, 3 do add(P.list_of(body, kind)) end
+  end
+  return words
+end
+
+-- the words that may stand at the end of a text, and how many bytes of it they replace
+local kMostWords = 500
+local function complete(text)
+  local word, words = open_string(text), {}
+  if word then
+    words = living_names()
+  else
+    word = text:match("[%w_]*$")
+    local separator = text:sub(-#word - 1, -#word - 1)
+    if separator == "." or separator == ":" then
+      words = members(follow(chain_at_end(text:sub(1, -#word - 2))), separator)
+    else
+      add_keys(words, P.env)
+    end
+  end
+  local list = {}
+  for _, each in ipairs(P.sorted_keys(words)) do
+    if #list < kMostWords and each:sub(1, #word) == word then list[#list + 1] = each end
+  end
+  return table.concat(list, "\n"), #word
+end
+
+function P.entry.complete(text)
+  if not P.env then return "names", "", 0 end
+  local ok, list, word = xpcall(complete, P.handler, text)
+  if not ok then return "names", "", 0 end
+  return "names", list, word
+end

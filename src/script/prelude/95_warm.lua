@@ -1,0 +1,46 @@
+-- Metamethods are compiled ahead. LuaJIT can't record one by itself while a script's operator calls it (it returns to no
+-- Lua function then), tries again and again, and after some thousand calls forbids whatever calls it to be compiled: a
+-- loop over many parts would be interpreted for good, some hundred times slower. Recorded here, by plain calls, it is a
+-- piece of compiled code of its own, and loops that call it take it in.
+local P = ...
+local V, Q, F, ffi = P.V, P.Q, P.F, P.ffi
+
+local kCalls = 150  -- more than make a function hot
+
+-- interpreted itself, so that only what it calls is recorded
+local function call_often(f, a, b, c)
+  for _ = 1, kCalls do f(a, b, c) end
+end
+jit.off(call_often)
+
+-- a class whose members do nothing; its metamethods share their code with those of all classes
+local function nothing() return 0 end
+local dummy = { name = "warm", getters = { x = nothing }, setters = { x = nothing }, methods = { m = nothing },
+  rows = {}, ctype = ffi.typeof("struct { const int32_t slot_, generation_; }") }
+P.finish(dummy)
+
+local calls = {}
+local function warm(ctype, name, ...)
+  local f = P.metas[tonumber(ctype)][name]
+  calls[#calls + 1] = { f, ... }
+end
+local v, q, f, h = V(1, 2, 3), Q(0, 0, 0, 1), F(true, false, true), dummy.ctype(0, 0)
+for _, name in ipairs { "__add", "__sub", "__mul", "__div", "__eq" } do warm(V, name, v, v) end
+warm(V, "__unm", v)
+warm(Q, "__mul", q, v)
+warm(Q, "__eq", q, q)
+warm(F, "__index", f, 1)
+warm(F, "__len", f)
+warm(dummy.ctype, "__index", h, "x")
+warm(dummy.ctype, "__newindex", h, "x", 1)
+warm(dummy.ctype, "__eq", h, h)
+local list = P.list_of(P.sim, 0)
+warm(P.L, "__len", list)
+warm(P.L, "__index", list, 1)
+local own = P.empty_list()
+warm(P.S, "__len", own)
+warm(P.S, "__index", own, 1)
+
+function P.entry.warm()
+  for _, call in ipairs(calls) do call_often(call[1], call[2], call[3], call[4]) end
+end

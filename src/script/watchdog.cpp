@@ -1,0 +1,157 @@
+// The watchdog's loop, and the signal by which it reaches the thread that runs Lua.
+#include "script/watchdog.h"
+
+#include <algorithm>
+#include <atomic>
+#include <chrono>
+
+#include <pthread.h>
+#include <signal.h>
+#include <sys/syscall.h>
+#include <unistd.h>
+
+// the C library's own: a sanitizer's wrapper would put a signal off until the next call that it knows, and compiled Lua
+// makes none
+extern "C" int __sigaction(int number, const struct sigaction* wanted, struct sigaction* before) noexcept;
+
+namespace limber {
+
+namespace {
+
+// ignored by default and used by nobody here: a late one does no harm
+constexpr int kSignal = SIGURG;
+constexpr std::int64_t kAgain = 5'000'000;  // a signal that met an unlucky moment is sent again after that, ns
+
+thread_local Watch* watched_here = nullptr;
+
+template <class T>
+T load(T& word, std::memory_order order = std::memory_order_relaxed) {
+  return std::atomic_ref(word).load(order);
+}
+
+template <class T>
+void store(T& word, T value, std::memory_order order = std::memory_order_relaxed) {
+  std::atomic_ref(word).store(value, order);
+}
+
+std::int64_t nanoseconds(clockid_t clock) {
+  timespec time{};
+  if (clock_gettime(clock, &time) != 0) return -1;
+  return std::int64_t{time.tv_sec} * 1'000'000'000 + time.tv_nsec;
+}
+
+// runs anywhere inside the call: in Lua, in compiled code, in C++. A signal that comes late finds another number
+#if defined(__GNUC__)
+__attribute__((no_sanitize("thread")))
+#endif
+void on_signal(int) {
+  Watch* const watch = watched_here;
+  if (watch == nullptr) return;
+  const std::uint64_t call = __atomic_load_n(&watch->call, __ATOMIC_RELAXED);
+  if ((call & 1u) != 0 && __atomic_load_n(&watch->asked, __ATOMIC_RELAXED) == call) watch->stop(*watch);
+}
+
+void install_handler() {
+  struct sigaction action {};
+  action.sa_handler = on_signal;
+  action.sa_flags = SA_RESTART;
+  sigemptyset(&action.sa_mask);
+  __sigaction(kSignal, &action, nullptr);
+}
+
+struct ThisThread {
+  pid_t id = static_cast<pid_t>(syscall(SYS_gettid));
+  clockid_t clock = clock_of_it();
+  static clockid_t clock_of_it() {
+    clockid_t clock{};
+    pthread_getcpuclockid(pthread_self(), &clock);
+    return clock;
+  }
+};
+
+}  // namespace
+
+void Watch::begin(std::int64_t budget_ns) {
+  thread_local const ThisThread here;
+  store(clock, here.clock);
+  store(thread, here.id);
+  store(budget, budget_ns);
+  watched_here = this;
+  store(call, call + 1, std::memory_order_release);  // nobody else writes it
+}
+
+void Watch::end() {
+  store(call, call + 1, std::memory_order_release);
+  std::atomic_signal_fence(std::memory_order_seq_cst);
+  watched_here = nullptr;
+}
+
+bool Watch::stop_asked() { return (call & 1u) != 0 && load(asked) == call; }
+
+std::shared_ptr<Watchdog> Watchdog::instance() {
+  static std::mutex mutex;
+  static std::weak_ptr<Watchdog> known;
+  const std::scoped_lock lock(mutex);
+  std::shared_ptr<Watchdog> found = known.lock();
+  if (found == nullptr) known = found = std::shared_ptr<Watchdog>(new Watchdog);
+  return found;
+}
+
+Watchdog::Watchdog() {
+  install_handler();
+  thread_ = std::thread([this] { run(); });
+}
+
+Watchdog::~Watchdog() {
+  {
+    const std::scoped_lock lock(mutex_);
+    end_ = true;
+  }
+  changed_.notify_all();
+  thread_.join();
+}
+
+void Watchdog::add(Watch& watch, std::int64_t poll_ns) {
+  {
+    const std::scoped_lock lock(mutex_);
+    watches_.push_back({&watch, poll_ns});
+  }
+  changed_.notify_all();
+}
+
+void Watchdog::remove(Watch& watch) {
+  const std::scoped_lock lock(mutex_);
+  std::erase_if(watches_, [&](const Watched& w) { return w.watch == &watch; });
+}
+
+void Watchdog::run() {
+  std::unique_lock lock(mutex_);
+  while (!end_) {
+    if (watches_.empty()) {
+      changed_.wait(lock);
+      continue;
+    }
+    std::int64_t wait = kAgain;
+    for (const Watched& w : watches_) wait = std::min(wait, look(*w.watch, w.poll));
+    changed_.wait_for(lock, std::chrono::nanoseconds(wait));
+  }
+}
+
+// how long this watch may be left alone, ns: CPU time never runs faster than the clock on the wall
+std::int64_t Watchdog::look(Watch& watch, std::int64_t poll) {
+  const std::uint64_t call = load(watch.call, std::memory_order_acquire);
+  if ((call & 1u) == 0) return poll;
+  const std::int64_t now = nanoseconds(load(watch.clock));
+  if (now < 0) return poll;  // its thread has ended
+  if (watch.seen != call) {
+    watch.seen = call;
+    watch.since = now;
+  }
+  const std::int64_t left = load(watch.budget) - (now - watch.since);
+  if (left > 0) return std::min(left, poll);
+  store(watch.asked, call);
+  syscall(SYS_tgkill, getpid(), load(watch.thread), kSignal);
+  return std::min(poll, kAgain);
+}
+
+}  // namespace limber

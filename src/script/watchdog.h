@@ -1,0 +1,70 @@
+// Watchdog: a thread that reads the CPU clock of the thread that runs Lua, and stops a call that takes too long. What
+// is measured is computing, never waiting: a loaded machine stops nobody who is innocent.
+#pragma once
+
+#include <condition_variable>
+#include <cstdint>
+#include <ctime>
+#include <memory>
+#include <mutex>
+#include <thread>
+#include <vector>
+
+#include <sys/types.h>
+
+namespace limber {
+
+/// One Lua state under watch: its thread writes the numbers of calls, the watchdog the number of a call to be stopped.
+struct Watch {
+  /// Called on the thread of the call, from a signal: must only do what a signal handler may.
+  void (*stop)(Watch& watch) = nullptr;
+  void* owner = nullptr;
+
+  // shared by the two threads: through std::atomic_ref only; plain, because a signal handler reads the first two
+  std::uint64_t call = 0;   ///< Odd while a call runs.
+  std::uint64_t asked = 0;  ///< The call that is to be stopped.
+  std::int64_t budget = 0;  ///< CPU time of the call, ns.
+  clockid_t clock = 0;      ///< Of the thread that runs the call.
+  pid_t thread = 0;
+
+  /// A call begins and ends on this thread. No lock, no allocation; a few nanoseconds.
+  void begin(std::int64_t budget_ns);
+  void end();
+  /// Whether this call is to be stopped: for native code that works on for long. [thread of the call]
+  bool stop_asked();
+
+  // the watchdog's own
+  std::uint64_t seen = 0;
+  std::int64_t since = 0;
+};
+
+class Watchdog {
+ public:
+  /// The process's one, started by the first who asks and ended when nobody holds it. [any]
+  static std::shared_ptr<Watchdog> instance();
+  ~Watchdog();
+  Watchdog(const Watchdog&) = delete;
+  Watchdog& operator=(const Watchdog&) = delete;
+
+  /// `poll_ns`: how soon a call that begins must be noticed. [any]
+  void add(Watch& watch, std::int64_t poll_ns);
+  void remove(Watch& watch);
+
+ private:
+  struct Watched {
+    Watch* watch;
+    std::int64_t poll;
+  };
+
+  Watchdog();
+  void run();
+  static std::int64_t look(Watch& watch, std::int64_t poll);
+
+  std::mutex mutex_;
+  std::condition_variable changed_;
+  std::vector<Watched> watches_;
+  bool end_ = false;
+  std::thread thread_;
+};
+
+}  // namespace limber

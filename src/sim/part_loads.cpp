@@ -1,0 +1,46 @@
+// PartLoads: places, and handing over.
+#include "sim/part_loads.h"
+
+#include "sim/part.h"
+
+namespace limber {
+
+std::uint32_t PartLoads::add(Part& part) {
+  if (spare_.empty()) {
+    spare_.push_back(static_cast<std::uint32_t>(loads_.size()));
+    loads_.emplace_back();
+    kicks_.emplace_back();
+    waiting_.reserve(loads_.capacity());
+  }
+  const std::uint32_t place = spare_.back();
+  spare_.pop_back();
+  loads_[place].part = &part;
+  const std::uint32_t slot = part.id().slot;
+  if (slot >= places_.size()) places_.resize(slot + 1, kNone);
+  places_[slot] = place;
+  return place;
+}
+
+void PartLoads::remove(std::uint32_t place) {
+  clear(place);
+  places_[loads_[place].part->id().slot] = kNone;
+  loads_[place].part = nullptr;
+  spare_.push_back(place);
+}
+
+void PartLoads::clear(std::uint32_t place) {
+  loads_[place].force = loads_[place].torque = Vec3(0);
+  kicks_[place] = {};
+}
+
+void PartLoads::push() {
+  for (const std::uint32_t place : waiting_) {
+    Load& load = loads_[place];
+    load.waits = false;
+    if (load.part != nullptr) load.part->push(load, kicks_[place]);
+    clear(place);
+  }
+  waiting_.clear();
+}
+
+}  // namespace limber

@@ -1,0 +1,92 @@
+// The consoles' history: kept at once, bounded, and whatever is in its file, the lines that are whole are read.
+#include "app/console_history.h"
+
+#include "app/program.h"
+#include "base/random.h"
+#include "console/private_folder.h"
+
+namespace limber::app_test {
+namespace {
+
+using Lines = std::vector<std::string>;
+
+std::string content(const std::string& file) {
+  std::ifstream in(file, std::ios::binary);
+  return {std::istreambuf_iterator<char>(in), {}};
+}
+
+TEST(ConsoleHistory, KeepsLinesOverConsoles) {
+  const PrivateFolder folder;
+  const std::string file = folder / "state/limber/console_history";
+  ConsoleHistory first(file);
+  EXPECT_TRUE(first.lines().empty());
+  for (const char* line : {"sim.time", "sim.time", "  ", "", "x = 'ä'", "two\nlines", "\x1b[31m", "sim.time"})
+    first.add(line);
+  const Lines kept = {"sim.time", "x = 'ä'", "sim.time"};
+  EXPECT_EQ(first.lines(), kept) << "no blank ones, none twice in a row, nothing that a terminal would obey";
+  EXPECT_EQ(ConsoleHistory(file).lines(), kept);
+  // two consoles at a time
+  ConsoleHistory other(file);
+  first.add("one");
+  other.add("another");
+  EXPECT_EQ(ConsoleHistory(file).lines(), (Lines{"sim.time", "x = 'ä'", "sim.time", "one", "another"}));
+  EXPECT_EQ(std::filesystem::status(file).permissions(),
+            std::filesystem::perms::owner_read | std::filesystem::perms::owner_write);
+}
+
+TEST(ConsoleHistory, IsBounded) {
+  const PrivateFolder folder;
+  const std::string file = folder / "h";
+  std::string much;
+  for (int i = 1; i <= 5000; i++) much += "line " + std::to_string(i) + "\n";
+  std::ofstream(file) << much;
+  ConsoleHistory history(file);
+  ASSERT_EQ(history.lines().size(), ConsoleHistory::kMostLines);
+  EXPECT_EQ(history.lines().front(), "line 4001");
+  EXPECT_EQ(history.lines().back(), "line 5000");
+  EXPECT_EQ(content(file).size(), 1000 * std::string("line 4001\n").size()) << "what is too old leaves the file";
+  history.add("new");
+  EXPECT_EQ(history.lines().size(), ConsoleHistory::kMostLines);
+  history.add(std::string(ConsoleHistory::kMostBytes + 1, 'x'));
+  EXPECT_EQ(history.lines().back(), "new");
+}
+
+TEST(ConsoleHistory, ADamagedFileGivesWhatIsWhole) {
+  const PrivateFolder folder;
+  const std::string file = folder / "h";
+  std::ofstream(file, std::ios::binary) << "good\n\xff\xfe\x80\n"
+                                        << std::string(3, '\0') << "\n\x1b[2J\nalso good\ncut";
+  EXPECT_EQ(ConsoleHistory(file).lines(), (Lines{"good", "also good", "cut"}));
+  Random random(3, "history");
+  for (int i = 0; i < 200; i++) {
+    std::string bytes;
+    for (int k = 0; k < 500; k++) bytes += static_cast<char>(static_cast<int>(random.uniform() * 256));
+    std::ofstream(file, std::ios::binary) << bytes << "\nlast\n";
+    ConsoleHistory history(file);
+    ASSERT_FALSE(history.lines().empty());
+    EXPECT_EQ(history.lines().back(), "last");
+  }
+}
+
+TEST(ConsoleHistory, WithoutAPlaceItLivesForOneConsole) {
+  for (const std::string& file : {std::string(), std::string("/proc/nowhere/h"), std::string("/")}) {
+    ConsoleHistory history(file);
+    history.add("x");
+    EXPECT_EQ(history.lines(), Lines{"x"}) << file;
+  }
+}
+
+TEST(ConsoleHistory, IsInTheStateFolder) {
+  const Environment home("HOME", "/home/somebody");
+  {
+    const Environment state("XDG_STATE_HOME", "/somewhere");
+    EXPECT_EQ(ConsoleHistory::default_file(), "/somewhere/limber/console_history");
+  }
+  const Environment state("XDG_STATE_HOME", nullptr);
+  EXPECT_EQ(ConsoleHistory::default_file(), "/home/somebody/.local/state/limber/console_history");
+  const Environment none("HOME", nullptr);
+  EXPECT_EQ(ConsoleHistory::default_file(), "");
+}
+
+}  // namespace
+}  // namespace limber::app_test

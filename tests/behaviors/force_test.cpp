@@ -1,0 +1,80 @@
+// force: F = d̂ir · clamp(amp, −max_amp, max_amp) on each part.
+#include "behaviors/rig.h"
+
+namespace limber {
+namespace {
+
+using namespace test;
+
+TEST(Force, PushesEveryPartAlongDirWhateverItsLength) {
+  Rig s;
+  Body& body = s.body("b");
+  Part& one = s.ball(body, {0, 0, 0});
+  Part& two = s.ball(body, {1, 0, 0});
+  Behavior& b = s.add(body, "force");
+  s.set(b.id(), "dir", {0, 30, 40});
+  s.set(b.id(), "amp", {10});
+  s.act();
+  for (const Part* part : {&one, &two}) {
+    expect_near(s.force(*part), {0, 6, 8}, 1e-12);
+    expect_near(s.torque(*part), {0, 0, 0}, 0);
+  }
+}
+
+TEST(Force, IsHeldBelowMaxAmpEitherWay) {
+  Rig s;
+  Part& part = s.loose({0, 0, 0});
+  Behavior& b = s.add(part.body(), "force");
+  s.set(b.id(), "max_amp", {5});
+  for (const double amp : {4.0, 7.0, -3.0, -8.0}) {
+    s.set(b.id(), "amp", {amp});
+    s.clear(part);
+    s.act();
+    expect_near(s.force(part), {amp > 5 ? 5 : amp < -5 ? -5 : amp, 0, 0}, 1e-12);
+  }
+}
+
+TEST(Force, ADirectionOfZeroPushesNowhere) {
+  Rig s;
+  Part& part = s.loose({0, 0, 0});
+  Behavior& b = s.add(part.body(), "force");
+  s.set(b.id(), "dir", {0, 0, 0});
+  s.set(b.id(), "amp", {10});
+  s.act();
+  expect_near(s.force(part), {0, 0, 0}, 0);
+}
+
+// a push of F for a tick of dt changes the velocity by F·dt/m, on however many internal steps
+TEST(Force, ActsForTheWholeTickOnEveryInternalStep) {
+  Rig s;
+  Part& part = s.loose({0, 0, 0}, 2);
+  Behavior& b = s.add(part.body(), "force");
+  s.set(b.id(), "amp", {12});
+  s.substeps(7);
+  s.ticks(1);
+  EXPECT_NEAR(part.linear_velocity().x, 12.0 / 2 / 60, 1e-6);
+  s.ticks(1);
+  EXPECT_NEAR(part.linear_velocity().x, 2 * 12.0 / 2 / 60, 1e-6);
+}
+
+// an interval of 10 ms at a tick of 4 ms: at 0, 12, 20, 32, 40 … ms, 100 times a simulated second
+TEST(Force, KeepsThePhaseOfItsInterval) {
+  Rig s;
+  Part& part = s.loose({0, 0, 0});
+  Behavior& b = s.add(part.body(), "force");
+  s.set(s.world.id(), "timestep", {0.004});
+  s.set(b.id(), "amp", {1});
+  s.set(b.id(), "app_interval", {10});
+  std::vector<int> fired;
+  double before = 0;
+  for (int tick = 0; tick < 250; tick++) {
+    s.ticks(1);
+    if (part.linear_velocity().x > before + 0.002) fired.push_back(4 * tick);
+    before = part.linear_velocity().x;
+  }
+  EXPECT_EQ(fired.size(), 100U);
+  EXPECT_EQ((std::vector<int>(fired.begin(), fired.begin() + 6)), (std::vector<int>{0, 12, 20, 32, 40, 52}));
+}
+
+}  // namespace
+}  // namespace limber

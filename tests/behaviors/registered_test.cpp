@@ -1,0 +1,135 @@
+// Every file of src/behaviors is a type of its name, and every type has what the reference tells of it.
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <set>
+
+#include "base/text.h"
+#include "sim/behavior.h"
+#include "sim/behavior_type.h"
+
+namespace limber {
+namespace {
+
+TEST(BuiltInBehaviors, OneAFile) {
+  std::set<std::string> files;
+  for (const auto& entry : std::filesystem::directory_iterator(LIMBER_SOURCE_DIR "/src/behaviors")) {
+    EXPECT_EQ(entry.path().extension(), ".cpp") << entry.path();
+    files.insert(entry.path().stem().string());
+  }
+  const BehaviorTypes known;
+  std::set<std::string> types;
+  for (const auto& type : known.all()) types.insert(type->name);
+  EXPECT_EQ(types, files);
+  EXPECT_EQ(types.size(), 12U);
+}
+
+TEST(BuiltInBehaviors, StandByAlphabetWhateverTheLinkerDid) {
+  const BehaviorTypes types;
+  for (std::size_t i = 1; i < types.all().size(); i++) EXPECT_LT(types.all()[i - 1]->name, types.all()[i]->name);
+}
+
+TEST(BuiltInBehaviors, AreToldOfInFull) {
+  const BehaviorTypes types;
+  for (const auto& type : types.all()) {
+    EXPECT_TRUE(type->is_built_in);
+    EXPECT_GT(type->doc.size(), 20U) << type->name;
+    EXPECT_EQ(type->doc.back(), '.') << type->name;
+    EXPECT_EQ(type->table->path(), "/physics/body/<body>/behavior/<" + type->name + ">");
+    EXPECT_EQ(type->is_group, type->group_table != nullptr) << type->name;
+    const auto rows = type->table->rows();
+    ASSERT_GT(rows.size(), kCommonBehaviorRows + 1) << type->name;
+    EXPECT_EQ(rows[0].name, "active");
+    EXPECT_EQ(rows[0].initial[0], 1);
+    EXPECT_EQ(rows[1].name, "time");
+    EXPECT_EQ(rows[2].name, "remove");
+    for (const Row& row : rows) {
+      EXPECT_GT(row.doc.size(), 5U) << type->name << " " << row.name;
+      if (row.kind == RowKind::property && row.type != RowType::boolean) {
+        EXPECT_TRUE(std::isfinite(row.min) && std::isfinite(row.max)) << type->name << " " << row.name;
+      }
+    }
+    if (type->group_table == nullptr) continue;
+    ASSERT_EQ(type->group_table->rows().size(), rows.size());
+    for (std::size_t i = 0; i < rows.size(); i++) {
+      EXPECT_EQ(type->group_table->row(static_cast<std::uint32_t>(i)).name, rows[i].name);
+    }
+  }
+}
+
+// the parameters, types and defaults of the design's table, by hand
+struct Wanted {
+  const char* type;
+  const char* row;
+  std::vector<double> initial;
+  const char* unit;
+};
+
+TEST(BuiltInBehaviors, HaveTheParametersThatWerePromised) {
+  const std::vector<Wanted> all = {
+      {"force", "dir", {1, 0, 0}, ""},
+      {"force", "amp", {0}, "N"},
+      {"force", "max_amp", {1e4}, "N"},
+      {"force", "app_interval", {1}, "ms"},
+      {"torque", "torque", {0, 0, 0}, "N·m"},
+      {"torque", "scale", {1}, ""},
+      {"torque", "app_interval", {1}, "ms"},
+      {"random_force", "min_dir", {-1, -1, -1}, ""},
+      {"random_force", "max_dir", {1, 1, 1}, ""},
+      {"random_force", "min_amp", {0}, "N"},
+      {"random_force", "max_amp", {10}, "N"},
+      {"random_force", "rand_interval", {1000}, "ms"},
+      {"random_force", "app_interval", {1}, "ms"},
+      {"random_torque", "min_torque", {-1, -1, -1}, "N·m"},
+      {"random_torque", "max_torque", {1, 1, 1}, "N·m"},
+      {"random_torque", "scale", {1}, ""},
+      {"random_torque", "rand_interval", {1000}, "ms"},
+      {"random_torque", "app_interval", {1}, "ms"},
+      {"rotation_target", "target", {0, 0, 0}, "rad"},
+      {"rotation_target", "speed", {0.1}, "rad"},
+      {"rotation_target", "app_interval", {1}, "ms"},
+      {"random_rotation_target", "min_target", {0, 0, 0}, "rad"},
+      {"random_rotation_target", "max_target", {0, 0, 0}, "rad"},
+      {"random_rotation_target", "speed", {0.1}, "rad"},
+      {"random_rotation_target", "rand_interval", {1000}, "ms"},
+      {"random_rotation_target", "app_interval", {1}, "ms"},
+      {"speed", "speed", {1}, "m/s"},
+      {"speed", "amount", {1}, "N·s/m"},
+      {"target_attraction", "target_pos", {0, 0, 0}, "m"},
+      {"target_attraction", "min_dist", {0}, "m"},
+      {"target_attraction", "max_dist", {10}, "m"},
+      {"target_attraction", "min_amp", {0}, "N"},
+      {"target_attraction", "max_amp", {10}, "N"},
+      {"target_attraction", "app_interval", {1}, "ms"},
+      {"volume", "max_dist", {1}, "m"},
+      {"volume", "min_amp", {0}, "N"},
+      {"volume", "max_amp", {10}, "N"},
+      {"volume", "app_interval", {1}, "ms"},
+      {"cohesion", "min_dist", {0}, "m"},
+      {"cohesion", "max_dist", {10}, "m"},
+      {"cohesion", "amount", {1}, "N"},
+      {"alignment", "min_dist", {0}, "m"},
+      {"alignment", "max_dist", {10}, "m"},
+      {"alignment", "linear_amount", {1}, "N·s/m"},
+      {"alignment", "angular_amount", {1}, "N·m·s/rad"},
+      {"alignment", "amount", {1}, ""},
+      {"separation", "min_dist", {0}, "m"},
+      {"separation", "max_dist", {1}, "m"},
+      {"separation", "amount", {1}, "N"},
+  };
+  const BehaviorTypes types;
+  std::size_t rows = 0;
+  for (const auto& type : types.all()) rows += type->table->rows().size() - kCommonBehaviorRows;
+  EXPECT_EQ(rows, all.size());
+  for (const Wanted& wanted : all) {
+    const Row* row = types.find(wanted.type)->table->find(wanted.row);
+    ASSERT_NE(row, nullptr) << wanted.type << " " << wanted.row;
+    EXPECT_EQ(std::vector<double>(row->initial.begin(), row->initial.begin() + row->width), wanted.initial)
+        << wanted.type << " " << wanted.row;
+    EXPECT_EQ(row->unit, wanted.unit) << wanted.type << " " << wanted.row;
+    EXPECT_EQ(row->kind, RowKind::property);
+  }
+}
+
+}  // namespace
+}  // namespace limber

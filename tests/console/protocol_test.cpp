@@ -1,0 +1,121 @@
+// The protocol: what one end writes the other reads, and anything at all may stand in a line.
+#include "console/protocol.h"
+
+#include <gtest/gtest.h>
+
+#include "base/random.h"
+
+namespace limber {
+namespace {
+
+using Kind = ConsoleLine::Kind;
+
+// a line as its reader gets it; each has its end and only one
+std::string cut(const std::string& line) {
+  EXPECT_EQ(line.find('\n'), line.size() - 1) << line;
+  return line.substr(0, line.size() - 1);
+}
+
+ConsoleLine read(const std::string& line) {
+  const Result<ConsoleLine> read = parse_line(cut(line));
+  EXPECT_TRUE(read.ok()) << line;
+  return read ? *read : ConsoleLine{};
+}
+
+TEST(Protocol, LinesAreAsTheyAreDocumented) {
+  EXPECT_EQ(request_line({7, false, "sim.time"}), "{\"evaluate\":\"sim.time\",\"id\":7}\n");
+  EXPECT_EQ(request_line({8, true, "sim.ti"}), "{\"complete\":\"sim.ti\",\"id\":8}\n");
+  EXPECT_EQ(hello_line("0.1.0", 42, "scripts/arms.lua"),
+            "{\"limber\":\"0.1.0\",\"pid\":42,\"scene\":\"scripts/arms.lua\"}\n");
+  EXPECT_EQ(answer_line(7, {Evaluation::Kind::value, "1.5"}), "{\"id\":7,\"value\":\"1.5\"}\n");
+  EXPECT_EQ(answer_line(7, {}), "{\"done\":true,\"id\":7}\n");
+  EXPECT_EQ(answer_line(7, {Evaluation::Kind::incomplete, ""}), "{\"id\":7,\"incomplete\":true}\n");
+  EXPECT_EQ(answer_line(7, {Evaluation::Kind::error, "no"}), "{\"error\":\"no\",\"id\":7}\n");
+  EXPECT_EQ(answer_line(8, {Evaluation::Kind::names, "tick\ntime", 2}),
+            "{\"id\":8,\"names\":[\"tick\",\"time\"],\"word\":2}\n");
+  EXPECT_EQ(log_line(0, {1, LogLevel::print, "hi"}), "{\"print\":\"hi\"}\n");
+  EXPECT_EQ(log_line(7, {1, LogLevel::warning, "oh"}), "{\"id\":7,\"warning\":\"oh\"}\n");
+  EXPECT_EQ(log_line(0, {1, LogLevel::error, "ah"}), "{\"fault\":\"ah\"}\n");
+  EXPECT_EQ(missed_line(3), "{\"missed\":3}\n");
+  EXPECT_EQ(refused_line("full"), "{\"refused\":\"full\"}\n");
+}
+
+TEST(Protocol, WhatOneEndWritesTheOtherReads) {
+  const std::string odd = "a\"b\\c\n\td 'é' \xe2\x80\xa6 \x01";
+  const Result<ConsoleRequest> request = parse_request(cut(request_line({9007199254740993u, true, odd})));
+  ASSERT_TRUE(request.ok());
+  EXPECT_EQ(request->id, 9007199254740993u);
+  EXPECT_TRUE(request->complete);
+  EXPECT_EQ(request->text, odd);
+  const ConsoleLine hello = read(hello_line("0.1.0", 42, "a scene"));
+  EXPECT_EQ(hello.kind, Kind::hello);
+  EXPECT_EQ(hello.version + "|" + hello.text, "0.1.0|a scene");
+  EXPECT_EQ(hello.pid, 42);
+  const ConsoleLine names = read(answer_line(3, {Evaluation::Kind::names, "a\nb", 1}));
+  EXPECT_EQ(names.names, (std::vector<std::string>{"a", "b"}));
+  EXPECT_EQ(names.word, 1U);
+  EXPECT_TRUE(read(answer_line(3, {Evaluation::Kind::names, "", 0})).names.empty());
+  EXPECT_EQ(read(missed_line(12)).count, 12U);
+  for (const auto& [line, kind] : {std::pair{answer_line(5, {}), Kind::done},
+                                   {answer_line(5, {Evaluation::Kind::value, "v"}), Kind::value},
+                                   {answer_line(5, {Evaluation::Kind::error, "e"}), Kind::error},
+                                   {answer_line(5, {Evaluation::Kind::incomplete, ""}), Kind::incomplete},
+                                   {log_line(5, {1, LogLevel::print, "p"}), Kind::print},
+                                   {log_line(5, {1, LogLevel::warning, "w"}), Kind::warning},
+                                   {log_line(5, {1, LogLevel::error, "f"}), Kind::fault}}) {
+    EXPECT_EQ(read(line).kind, kind) << line;
+    EXPECT_EQ(read(line).id, 5U) << line;
+  }
+}
+
+TEST(Protocol, NothingFromAScriptCommandsATerminal) {
+  EXPECT_EQ(read(answer_line(1, {Evaluation::Kind::value, "\x1b[2Jgone\xff"})).text, "\\x1b[2Jgone\\xff");
+  EXPECT_EQ(read(answer_line(1, {Evaluation::Kind::names, "\x1b[2J"})).names[0], "\\x1b[2J");
+  EXPECT_EQ(read(refused_line("\x07")).text, "\\x07");
+}
+
+TEST(Protocol, WrongRequestsSayWhatIsRight) {
+  for (const char* wrong : {"", "sim.time", "{", "[]", "1", "null", "\"x\"", "\xff\xfe", "[[[[[[[[[[[["}) {
+    const Result<ConsoleRequest> request = parse_request(wrong);
+    ASSERT_FALSE(request.ok()) << wrong;
+    EXPECT_EQ(request.error(), "this is no request; one is a line of JSON such as {\"id\":1,\"evaluate\":\"sim.time\"}")
+        << wrong;
+  }
+  for (const char* wrong : {"{}", "{\"id\":1}", "{\"evaluate\":1}", "{\"evaluate\":[\"x\"]}",
+                            "{\"evaluate\":{\"a\":1}}", "{\"complete\":null,\"evaluate\":\"x\"}"})
+    EXPECT_EQ(parse_request(wrong).error(), "a request has a text in \"evaluate\" or in \"complete\"") << wrong;
+  // an id that is none is 0
+  EXPECT_EQ(parse_request("{\"id\":\"seven\",\"evaluate\":\"x\"}")->id, 0U);
+  EXPECT_EQ(parse_request("{\"id\":-1,\"evaluate\":\"x\"}")->id, 0U);
+  // a very deep one is refused as fast as a flat one
+  EXPECT_FALSE(parse_request(std::string(kMostLine, '[')).ok());
+  EXPECT_FALSE(parse_request("{\"evaluate\":" + std::string(kMostLine, '{')).ok());
+}
+
+TEST(Protocol, GarbageIsReadWithoutHarm) {
+  Random random(7, "protocol");
+  const std::string good =
+      request_line({1, false, "print('x')"}) + answer_line(2, {Evaluation::Kind::names, "a\nb", 1});
+  std::size_t refused = 0;
+  for (int i = 0; i < 20000; i++) {
+    std::string line = i % 2 == 0 ? good.substr(0, 1 + static_cast<std::size_t>(random.uniform() * 70)) : "";
+    const auto times = 1 + static_cast<int>(random.uniform() * 8);
+    for (int k = 0; k < times; k++) {
+      const auto byte = static_cast<char>(static_cast<int>(random.uniform() * 256));
+      if (line.empty() || i % 2 == 1) {
+        line += byte;
+      } else {
+        line[static_cast<std::size_t>(random.uniform() * static_cast<double>(line.size()))] = byte;
+      }
+    }
+    const Result<ConsoleRequest> request = parse_request(line);
+    const Result<ConsoleLine> answer = parse_line(line);
+    refused += request.ok() ? 0 : 1;
+    EXPECT_TRUE(request.ok() || !request.error().empty());
+    EXPECT_TRUE(!answer.ok() || answer->names.size() <= 2U);
+  }
+  EXPECT_GT(refused, 15000U);
+}
+
+}  // namespace
+}  // namespace limber

@@ -1,0 +1,179 @@
+// Behaviours from outside: the seed's message, paths, lists, faults; no allocation; the same run twice.
+#include "engine/behaviors.h"
+
+#include "base/log.h"
+#include "engine/show.h"
+
+namespace limber::engine_test {
+namespace {
+
+constexpr const char* kScene = R"(
+sim.gravity = vec3(0, 0, 0)
+local shape = sim:add_sphere_shape("ball", 0.1)
+for i = 1, 3 do
+  local body = sim:add_body("arm" .. i)
+  body:add_part("base", shape, { position = vec3(i, 0, 0) })
+  body:add_part("tip", shape, { position = vec3(i, 1, 0) })
+  if i < 3 then body:add_behavior("random_force", "wind", { parts = "tip" }) end
+  body:add_behavior("force", "push", { parts = "base" })
+end
+sim:add_group_behavior("cohesion", "swarm", { bodies = "arm*", parts = "tip" })
+)";
+
+struct Behaviors : testing::Test {
+  SceneFile file{kScene};
+  Show show{file.path()};
+  void SetUp() override { log_to_stderr(false); }
+  void TearDown() override { log_to_stderr(true); }
+
+  template <class... A>
+  std::vector<std::string> ask(std::string address, A&&... args) {
+    show.outbox();
+    show.send(std::move(address), std::forward<A>(args)...);
+    show.engine.tick();
+    return show.outbox();
+  }
+  double of(const std::string& path, std::size_t i = 0) { return show.read("/physics/body/" + path, i); }
+};
+
+using Texts = std::vector<std::string>;
+
+TEST_F(Behaviors, TheSeedsMessageNamesABehaviourInEveryBody) {
+  EXPECT_EQ(ask("/physics/behavior/parameter", "wind", "maxAmp", 4), Texts{});
+  EXPECT_EQ(of("arm1/behavior/wind/max_amp"), 4);
+  EXPECT_EQ(of("arm2/behavior/wind/max_amp"), 4);
+  EXPECT_EQ(ask("/physics/behavior/parameter", "wind", "minDir", -1, 0.5, 2), Texts{});
+  EXPECT_EQ(of("arm2/behavior/wind/min_dir", 1), 0.5);
+}
+
+TEST_F(Behaviors, OrInOneBodyByNameOrPattern) {
+  EXPECT_EQ(ask("/physics/behavior/parameter", "arm1", "wind", "active", 0), Texts{});
+  EXPECT_EQ(of("arm1/behavior/wind/active"), 0);
+  EXPECT_EQ(of("arm2/behavior/wind/active"), 1);
+  EXPECT_EQ(ask("/physics/behavior/parameter", "arm[12]", "w*", "appinterval", 20), Texts{});
+  EXPECT_EQ(of("arm2/behavior/wind/app_interval"), 20);
+  EXPECT_EQ(ask("/physics/behavior/parameter", "*", "push", "amp", "7.5"), Texts{});
+  EXPECT_EQ(of("arm3/behavior/push/amp"), 7.5);
+  EXPECT_EQ(ask("/physics/behavior/parameter", "arm1", "wind", "active", "true"), Texts{});
+  EXPECT_EQ(of("arm1/behavior/wind/active"), 1);
+  EXPECT_EQ(ask("/physics/behavior/parameter", "arm1", "wind", "active", false), Texts{});
+  EXPECT_EQ(of("arm1/behavior/wind/active"), 0);
+}
+
+TEST_F(Behaviors, AGroupsMembersAreBehavioursLikeAnyOther) {
+  EXPECT_EQ(ask("/physics/behavior/parameter", "arm2", "swarm", "amount", -2), Texts{});
+  EXPECT_EQ(of("arm2/behavior/swarm/amount"), -2);
+  EXPECT_EQ(of("arm1/behavior/swarm/amount"), 1);
+  EXPECT_EQ(ask("/physics/group/swarm/amount", 3), Texts{});
+  for (const char* arm : {"arm1", "arm2", "arm3"}) EXPECT_EQ(of(std::string(arm) + "/behavior/swarm/amount"), 3);
+  EXPECT_EQ(ask("/physics/group/*/active", 0), Texts{});
+  EXPECT_EQ(of("arm3/behavior/swarm/active"), 0);
+}
+
+TEST_F(Behaviors, PathsReachThem) {
+  EXPECT_EQ(ask("/physics/body/arm1/behavior/wind/maxamp", 6), Texts{});
+  EXPECT_EQ(of("arm1/behavior/wind/max_amp"), 6);
+  EXPECT_EQ(ask("/physics/body/arm*/behavior/*/active", 0), Texts{});
+  EXPECT_EQ(of("arm3/behavior/push/active"), 0);
+  EXPECT_EQ(ask("/physics/body/arm1/behavior/push/remove"), Texts{});
+  EXPECT_EQ(ask("/list/behaviors", "arm1"), (Texts{"/list/behaviors arm1 wind swarm"}));
+  EXPECT_EQ(ask("/physics/group/swarm/remove"), Texts{});
+  EXPECT_EQ(ask("/list/groups"), (Texts{"/list/groups "}));
+}
+
+TEST_F(Behaviors, Lists) {
+  EXPECT_EQ(ask("/list/behaviors", "arm2"), (Texts{"/list/behaviors arm2 wind push swarm"}));
+  EXPECT_EQ(ask("/list/groups"), (Texts{"/list/groups swarm"}));
+  EXPECT_EQ(ask("/list/groups", "x"), (Texts{"/error /list/groups takes no arguments"}));
+}
+
+TEST_F(Behaviors, RefusalsSayWhatExists) {
+  const auto refused = [&](auto... args) {
+    const Texts texts = ask("/physics/behavior/parameter", args...);
+    const std::string head = "/error /physics/behavior/parameter ";
+    return texts.size() == 1 && texts[0].starts_with(head) ? texts[0].substr(head.size()) : "not refused";
+  };
+  EXPECT_EQ(refused("wnid", "amp", 1), "there is no behavior 'wnid'; did you mean 'wind'?");
+  EXPECT_EQ(refused("arm1", "wnid", "amp", 1), "no behavior 'wnid' in 'arm1'; did you mean 'wind'?");
+  EXPECT_EQ(refused("amr1", "wind", "amp", 1), "there is no body 'amr1'; did you mean 'arm1'?");
+  EXPECT_EQ(refused("wind", "maxampp", 1),
+            "behavior 'arm2/wind' (random_force) has no parameter 'maxampp'; did you mean 'max_amp'?");
+  EXPECT_EQ(refused("wind", "time", 1),
+            "behavior 'arm2/wind' (random_force) has no parameter 'time'; there are: active, "
+            "min_dir, max_dir, min_amp, max_amp, rand_interval, app_interval");
+  EXPECT_EQ(refused("wind", "minDir", 1, 2), "takes 3 numbers, not 2");
+  EXPECT_EQ(refused("wind", "active", "maybe"), "takes true or false, not 'maybe'");
+  EXPECT_EQ(refused("wind", "maxAmp", std::nan("")), "takes 1 number; nan is none");
+  EXPECT_EQ(refused(), "takes a body or none, a behavior, the name of its parameter, and the parameter's value");
+  EXPECT_EQ(refused("wind", 3),
+            "takes a body or none, a behavior, the name of its parameter, and the parameter's value");
+  EXPECT_EQ(of("arm1/behavior/wind/max_amp"), 10);
+}
+
+TEST_F(Behaviors, ABehaviourOrBodyMayBeCalledByANumber) {
+  World& world = show.engine.world();
+  Body& body = **world.add_body("1");
+  ASSERT_TRUE(world.behaviors().add(body, "force", "2").ok());
+  EXPECT_EQ(ask("/physics/behavior/parameter", 1, "2", "amp", 5), Texts{});
+  EXPECT_EQ(of("1/behavior/2/amp"), 5);
+  EXPECT_EQ(ask("/physics/behavior/parameter", 2, "amp", 6), Texts{});
+  EXPECT_EQ(of("1/behavior/2/amp"), 6);
+}
+
+TEST_F(Behaviors, AValueOfThePerformersOutlivesAReset) {
+  ask("/physics/behavior/parameter", "arm1", "wind", "maxAmp", 4);
+  ask("/physics/group/swarm/amount", 3);
+  ask("/transport/reset");
+  show.ticks(1);
+  EXPECT_EQ(of("arm1/behavior/wind/max_amp"), 4);
+  EXPECT_EQ(of("arm2/behavior/swarm/amount"), 3);
+}
+
+/// Errs at its second step.
+class Broken : public Behavior {
+ public:
+  void step(double) override {
+    if (++steps_ == 2) fail({"the string broke", "behaviors_lua/harp.lua", 12});
+  }
+
+ private:
+  int steps_ = 0;
+};
+
+TEST_F(Behaviors, AFaultIsToldOnceAndCounted) {
+  World& world = show.engine.world();
+  ASSERT_TRUE(
+      world.behaviors().types().add(BehaviorType::of<Broken>("broken", "Breaks.", BehaviorTargets::any, {})).ok());
+  ASSERT_TRUE(world.behaviors().add(*world.find_body("arm1"), "broken", "harp").ok());
+  const std::uint64_t faults = show.engine.faults();
+  show.outbox();
+  show.ticks(5);
+  EXPECT_EQ(show.outbox(),
+            (Texts{"/script/error behaviors_lua/harp.lua 12 /physics/body/arm1/behavior/harp: the string broke"}));
+  EXPECT_EQ(show.engine.faults(), faults + 1);
+}
+
+TEST(EngineBehaviors, TwoRunsAreTheSameToTheBit) {
+  const SceneFile file(kEveryBehavior);
+  const auto run = [&](int amount) {
+    Show show(file.path());
+    show.ticks(20);
+    show.send("/physics/group/cohesion/amount", amount);
+    show.ticks(100);
+    return show.engine.state_hash();
+  };
+  EXPECT_EQ(run(2), run(2));
+  EXPECT_NE(run(2), run(3));
+}
+
+TEST(EngineBehaviors, TheTimeTheyTookIsNotInTheHash) {
+  const SceneFile file(kEveryBehavior);
+  Show show(file.path());
+  show.ticks(3);
+  const std::uint64_t hash = show.engine.state_hash();
+  EXPECT_GT(show.engine.times().behaviors, 0);
+  EXPECT_EQ(show.engine.state_hash(), hash);
+}
+
+}  // namespace
+}  // namespace limber::engine_test

@@ -1,0 +1,282 @@
+// Random scripts over a grammar, with random limits of time and memory: the program lives, scripts that come after
+// still run, and a callback that fails leaves the world as it was, bit for bit.
+#include <cstddef>
+#include <cstdint>
+#include <cstdlib>
+#include <cstring>
+#include <span>
+#include <string>
+#include <string_view>
+
+#include <fmt/format.h>
+#include <lua.hpp>
+
+#include "base/log.h"
+#include "script/context.h"
+#include "script/vm.h"
+
+namespace limber {
+namespace {
+
+void must(bool condition) {
+  if (!condition) std::abort();
+}
+
+struct SilentHost : ScriptHost {
+  void send(Message) override {}
+  void reply(const Origin&, Message) override {}
+  void send_direct(const Origin&, Message) override {}
+  void plan_osc(const OscPlan&) override {}
+  void ask_reset() override {}
+  void script_error(std::string_view file, int line, std::string_view text) override {
+    faults++;
+    must(file == "fuzz.lua" && line > 0 && !text.empty() && text.size() < 20000);
+  }
+  void print(std::string_view) override {}
+  int faults = 0;
+};
+
+// turns bytes into statements; when they are used up everything is its first, plain choice
+class Writer {
+ public:
+  explicit Writer(std::span<const std::uint8_t> bytes) : bytes_(bytes) {}
+
+  std::string scene(bool all_fail) {
+    if (all_fail) end_ = "error('end') ";
+    std::string text = "local a, b, c, d = 1, 'x', {}, nil\n" + block(3);
+    for (const char* where : {"sim:on_start", "sim:on_step", "sim:on_step"}) text += callback(where, "", 3);
+    text += callback("sim:every", pick({"0.01, ", "1, ", "0.03, "}), 2);
+    text += callback("osc:on", "'/go', ", 2);
+    return text;
+  }
+  unsigned byte() {
+    if (at_ == bytes_.size()) return 0;
+    return bytes_[at_++];
+  }
+
+ private:
+  // what is registered fails when all do: at its end at the latest
+  std::string callback(std::string_view where, std::string_view arguments, int depth) {
+    return fmt::format("{}({}function(e) {} {}end)\n", where, arguments, block(depth), end_);
+  }
+
+  std::string pick(std::initializer_list<const char*> list) { return list.begin()[byte() % list.size()]; }
+
+  std::string block(int depth) {
+    std::string text;
+    const unsigned count = 1 + byte() % 4;
+    for (unsigned i = 0; i < count; i++) text += statement(depth) + " ";
+    return text;
+  }
+
+  std::string statement(int depth) {
+    if (depth <= 0) return fmt::format("{} = {}", name(), value(1));
+    switch (byte() % 24) {
+      case 1:
+        return fmt::format("for i = 1, {} do {} end", pick({"3", "100", "1e5", "math.huge"}), block(depth - 1));
+      case 2:
+        return fmt::format("while {} do {} end", pick({"true", "a ~= b", "d"}), block(depth - 1));
+      case 3:
+        return fmt::format("repeat {} until {}", block(depth - 1), value(depth - 1));
+      case 4:
+        return fmt::format("if {} then {} else {} end", value(1), block(depth - 1), block(depth - 1));
+      case 5:
+        return fmt::format("pcall(function(e) {} end, {})", block(depth - 1), value(1));
+      case 6:
+        return fmt::format("{} = coroutine.wrap(function(e) {} coroutine.yield({}) {} end)", name(), block(depth - 1),
+                           value(1), block(depth - 1));
+      case 7:
+        return fmt::format("{} = function(e) {} return {} end", name(), block(depth - 1), value(depth - 1));
+      case 8:
+        return fmt::format("{} = setmetatable({{}}, {{ {} = function(e, f) {} return {} end }})", name(),
+                           pick({"__index", "__newindex", "__add", "__tostring", "__lt", "__call", "__concat", "__eq"}),
+                           block(depth - 1), value(1));
+      case 9:
+        return fmt::format("table.sort({}, function(e, f) {} return {} end)", table(), block(depth - 1), value(1));
+      case 10:
+        return fmt::format("for k, v in pairs({}) do {} end", value(1), block(depth - 1));
+      case 11:
+        return fmt::format("xpcall(function() {} end, function(e) {} end)", block(depth - 1), block(depth - 1));
+      case 12:
+        return fmt::format("c[{}] = {}", value(1), value(depth - 1));
+      case 13:
+        return fmt::format("load({})", pick({"'a = 1'", "'while true do end'", "('a='):rep(9)", "b", "'\\27LJ'"}));
+      case 14:
+        return world(depth);
+      case 15:
+        return world(depth);
+      case 16:
+        return fmt::format("{} = ({}):gsub({}, {})", name(), text(), pattern(), value(1));
+      case 17:
+        return fmt::format("error({})", value(1));
+      case 18:
+        return fmt::format("osc:send('/out', {})", value(1));
+      case 19:
+        return callback(pick({"sim:on_step", "sim:on_start", "sim:on_contact"}), "", depth - 1);
+      default:
+        return fmt::format("{} = {}", name(), value(depth));
+    }
+  }
+
+  std::string world(int depth) {
+    const std::string body = pick({"sim.bodies[1]", "sim.bodies[#sim.bodies]", "sim:body('one')", "c"});
+    switch (byte() % 14) {
+      case 1:
+        return fmt::format("sim:add_body({}):add_part('p', 'ball', {{ mass = {} }})", text(), number());
+      case 2:
+        return fmt::format("{}:copy({})", body, text());
+      case 3:
+        return fmt::format("{}:remove()", body);
+      case 4:
+        return fmt::format("{}.root:apply_force(vec3({}, {}, 1))", body, number(), number());
+      case 5:
+        return fmt::format("{}.position = vec3({}, 0, {})", body, number(), number());
+      case 6:
+        return fmt::format("{}.root.{} = {}", body, pick({"mass", "friction", "position", "nothing"}), value(1));
+      case 7:
+        return fmt::format("{}:reset()", body);
+      case 8:
+        return fmt::format("sim.gravity = vec3({}, 0, {})", number(), number());
+      case 9:
+        return callback("sim:after", number() + ", ", depth - 1);
+      case 10:
+        return fmt::format("{0}:add_joint({1}, {0}.parts[1], {0}:add_part({1}, 'ball'))", body, text());
+      case 11:
+        return fmt::format("{}.angular_velocity = vec3({}, 1, 0)", body, number());
+      case 12:
+        return fmt::format("{} = {}.root", name(), body);
+      case 13:
+        return fmt::format("sim:add_compound_shape({}):add_child('ball')", text());
+      default:
+        return fmt::format("{}.linear_velocity = vec3(0, 0, {})", body, number());
+    }
+  }
+
+  std::string value(int depth) {
+    switch (byte() % (depth <= 0 ? 6 : 18)) {
+      case 1:
+        return text();
+      case 2:
+        return pick({"nil", "true", "false", "print", "sim", "rng", "osc", "params", "string", "sim.bodies"});
+      case 3:
+        return table();
+      case 4:
+        return name();
+      case 5:
+        return name();
+      case 6:
+        return fmt::format("({} {} {})", value(depth - 1),
+                           pick({"+", "-", "*", "/", "..", "==", "<", "and", "or", "%", "^", "~="}), value(depth - 1));
+      case 7:
+        return fmt::format("{}({})", name(), value(depth - 1));
+      case 8:
+        return fmt::format("string.{}({}, {})",
+                           pick({"find", "match", "gsub", "rep", "format", "byte", "sub", "gmatch"}), value(depth - 1),
+                           pattern());
+      case 9:
+        return fmt::format("table.{}({}, {})", pick({"concat", "insert", "remove", "maxn"}), value(depth - 1),
+                           value(depth - 1));
+      case 10:
+        return fmt::format("vec3({}, {}, {})", number(), number(), number());
+      case 11:
+        return fmt::format("{}.{}", value(depth - 1),
+                           pick({"x", "root", "position", "name", "parts", "motors", "__index"}));
+      case 12:
+        return fmt::format("#{}", value(depth - 1));
+      case 13:
+        return fmt::format("tostring({})", value(depth - 1));
+      case 14:
+        return fmt::format("select({}, unpack({}))", number(), table());
+      case 15:
+        return fmt::format("(function(...) return ... end)({})", value(depth - 1));
+      case 16:
+        return fmt::format("b:rep({}):rep({})", byte(), byte());
+      case 17:
+        return fmt::format("math.{}({})", pick({"random", "floor", "sqrt", "noise", "huge", "clamp"}),
+                           value(depth - 1));
+      default:
+        return number();
+    }
+  }
+
+  std::string name() { return pick({"a", "b", "c", "d", "e", "g"}); }
+  std::string number() {
+    return pick({"1", "0", "-1", "0.5", "(0/0)", "math.huge", "-math.huge", "2^31", "1e300", "-2^53", "7", "1e-9"});
+  }
+  std::string text() {
+    return pick({"'x'", "''", "'one'", "('ab'):rep(1000)", "'%d+'", "'a b c'", "b", "tostring(a)"});
+  }
+  std::string pattern() {
+    return pick(
+        {"'.'", "'%w+'", "'(a*)*b'", "('a*'):rep(30) .. 'b'", "'%b()'", "'%f[%a]'", "'['", "'(.-)%1'", "'^'", "b"});
+  }
+  std::string table() {
+    return pick({"{}", "{ 3, 1, 2 }", "{ a, b, c }", "{ x = 1, y = c }", "c", "{ [0.5] = 1, [sim] = 2 }"});
+  }
+
+  std::span<const std::uint8_t> bytes_;
+  std::size_t at_ = 0;
+  std::string end_;
+};
+
+// the same scripts run after it
+void still_works(Vm& vm) {
+  constexpr std::string_view kGood = "local n = 0 for i = 1, 100 do n = n + i end return n";
+  for (int attempt = 0; attempt < 100; attempt++) {
+    must(luaL_loadbuffer(vm.state(), kGood.data(), kGood.size(), "@good") == 0);
+    if (!vm.guard().call(0, 1)) {
+      must(vm.guard().fault().stopped);  // the limits may be that tight
+      continue;
+    }
+    must(lua_tonumber(vm.state(), -1) == 5050);
+    lua_settop(vm.state(), 0);
+    return;
+  }
+  must(false);
+}
+
+void play(std::span<const std::uint8_t> bytes) {
+  static Store store;
+  static World world(store);
+  world.clear();
+  world.restart_time();
+  Writer writer(bytes);
+  SceneOptions options;
+  options.limits.call_ms = 0.05 * (1 + writer.byte());
+  options.limits.run_ms = 0.2 * (1 + writer.byte());
+  options.limits.memory = (std::size_t{3} << 20u) + (std::size_t{writer.byte()} << 15u);
+  const bool all_fail = writer.byte() % 4 != 1;
+  SilentHost host;
+  ScriptContext context(world, host, options);
+  context.random_name = "fuzz";
+  Vm vm(context, writer.byte() % 8 == 1 ? VmMode::draft : VmMode::live);
+  const std::string before =
+      "local ball = sim:add_sphere_shape('ball', 0.1) "
+      "for i, name in ipairs { 'one', 'two' } do "
+      "sim:add_body(name):add_part('p', ball, { position = { i, 0, 1 }, report_contacts = true }) end ";
+  context.answer.top_level = 1;
+  (void)vm.run(before + writer.scene(all_fail), "fuzz.lua");
+  context.answer.top_level = 0;
+  world.settle();
+  world.step();
+  for (int tick = 0; tick < 4; tick++) {
+    const std::uint64_t hash = context.hash(world.state_hash());
+    const std::size_t shapes = world.shapes().size();
+    if (tick == 0) vm.start();
+    vm.message({"/go", {Arg::of(1.0)}}, {});
+    vm.tick(1.0 / 60);
+    if (all_fail) must(context.hash(world.state_hash()) == hash && world.shapes().size() == shapes);
+    world.step();
+    vm.collect_garbage();
+  }
+  still_works(vm);
+}
+
+}  // namespace
+}  // namespace limber
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  limber::log_to_stderr(false);
+  limber::play({data, size});
+  return 0;
+}

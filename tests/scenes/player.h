@@ -1,0 +1,99 @@
+// A scene as it is played, without waiting: messages in, what goes out, values of rows. For the tests of scenes.
+#pragma once
+
+#include <unistd.h>
+
+#include <filesystem>
+#include <fstream>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "base/log.h"
+#include "engine/engine.h"
+#include "params/catalog.h"
+
+namespace limber {
+
+/// A scene of scripts/, or the file of a path that begins with /.
+struct Player {
+  explicit Player(const std::string& scene) : started(begin(scene)) {
+    EXPECT_TRUE(started.ok()) << (started.ok() ? "" : started.error());
+  }
+  struct MayFail {};
+  Player(const std::string& scene, MayFail) : started(begin(scene)) {}
+  ~Player() { log_to_stderr(true); }
+
+  void play(double seconds) {
+    const double end = engine->world().time() + seconds - 1e-9;
+    while (engine->world().time() < end) engine->tick();
+  }
+  World& world() const { return engine->world(); }
+  Body& body(const std::string& name) const { return *world().find_body(name); }
+
+  void send(const std::string& address, std::vector<Arg> args) { link.inbox.push({{{address, std::move(args)}}, {}}); }
+  double value(const std::string& path, std::size_t index = 0) const {
+    const Result<Place> place = find_place(engine->store(), path);
+    if (!place || place->row == nullptr) {
+      ADD_FAILURE() << path << " is no value";
+      return 0;
+    }
+    double values[4] = {};
+    engine->store().get(place->node, *place->row, values);
+    return values[index];
+  }
+  /// What went out since the last call.
+  std::vector<Message> sent() {
+    std::vector<Outgoing> out;
+    link.outbox.drain(out);
+    std::vector<Message> messages;
+    for (Outgoing& each : out) messages.push_back(std::move(each.message));
+    return messages;
+  }
+
+  EngineLink link;
+  std::unique_ptr<Engine> engine;
+  Result<void> started;
+
+ private:
+  Result<void> begin(const std::string& scene) {
+    log_to_stderr(false);
+    EngineOptions options;
+    options.scene = scene.starts_with('/') ? scene : std::string(LIMBER_SOURCE_DIR) + "/scripts/" + scene;
+    options.scene_options.data_dir = LIMBER_SOURCE_DIR;
+    options.fast = true;
+    options.print = false;
+    engine = std::make_unique<Engine>(link, options);
+    return engine->start();
+  }
+};
+
+/// A folder with files of its own that goes when the test is over.
+class ShowFolder {
+ public:
+  ShowFolder() {
+    static int count = 0;
+    folder_ = std::filesystem::temp_directory_path() /
+              ("limber_scenes_" + std::to_string(::getpid()) + "_" + std::to_string(count++));
+    std::filesystem::create_directories(folder_ / "scripts");
+  }
+  ~ShowFolder() {
+    std::error_code ignored;
+    std::filesystem::remove_all(folder_, ignored);
+  }
+  ShowFolder(const ShowFolder&) = delete;
+  ShowFolder& operator=(const ShowFolder&) = delete;
+
+  std::string write(const std::string& name, const std::string& text) const {
+    std::filesystem::create_directories((folder_ / name).parent_path());
+    std::ofstream(folder_ / name) << text;
+    return (folder_ / name).string();
+  }
+
+ private:
+  std::filesystem::path folder_;
+};
+
+}  // namespace limber

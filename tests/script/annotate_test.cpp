@@ -1,0 +1,174 @@
+// The definitions for editors: whole, true, well-formed, and the committed copy is today's.
+#include "script/annotate.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <fstream>
+#include <iterator>
+#include <lua.hpp>
+#include <set>
+
+#include "base/text.h"
+#include "luacats.h"
+#include "params/row_text.h"
+#include "stage.h"
+
+namespace limber {
+namespace {
+
+std::string names_of_scenes() {
+  Stage stage;
+  return stage.scene.names();
+}
+
+struct Annotate : testing::Test {
+  std::string names = names_of_scenes();
+  std::string text = annotations(names);
+  luacats::Reader read{text};
+
+  bool has(const std::string& owner, const std::string& member) {
+    const auto found = read.classes.find(owner);
+    return found != read.classes.end() &&
+           (found->second.fields.contains(member) || found->second.functions.contains(member));
+  }
+};
+
+TEST_F(Annotate, TheCommittedCopyIsTodays) {
+  std::ifstream in(LIMBER_SOURCE_DIR "/scripts/library/limber.d.lua");
+  const std::string committed{std::istreambuf_iterator<char>(in), {}};
+  EXPECT_EQ(committed, text) << "renew it: build/limber annotate scripts/library/limber.d.lua";
+}
+
+TEST_F(Annotate, EveryLineIsWellFormed) {
+  for (const std::string& complaint : read.complaints) ADD_FAILURE() << "limber.d.lua:" << complaint;
+  EXPECT_GT(read.classes.size(), 20U);
+}
+
+TEST_F(Annotate, LuaReadsIt) {
+  const std::unique_ptr<lua_State, decltype(&lua_close)> state(luaL_newstate(), &lua_close);
+  EXPECT_EQ(luaL_loadbuffer(state.get(), text.data(), text.size(), "@limber.d.lua"), 0)
+      << lua_tostring(state.get(), -1);
+}
+
+TEST_F(Annotate, EveryNameOfAScriptIsThere) {
+  for (const std::string_view line : split(names, '\n')) {
+    if (line.empty()) continue;
+    const std::string name(line);
+    const std::size_t mark = name.find_first_of(".:");
+    const std::string owner = name.substr(0, mark);
+    const bool there = mark == std::string::npos ? read.globals.contains(name) || read.functions.contains(name)
+                                                 : has(owner, name.substr(mark + 1)) || read.functions.contains(name) ||
+                                                       has(owner + "_maker", name.substr(mark + 1));
+    EXPECT_TRUE(there || read.comments.find(" " + name + " ") != std::string::npos)
+        << name << ": give it a few lines in src/script/annotations";
+  }
+}
+
+TEST_F(Annotate, NothingIsThereThatScriptsDoNotSee) {
+  std::set<std::string> real;
+  for (const std::string_view line : split(names, '\n')) {
+    std::string name(line);
+    if (const std::size_t colon = name.find(':'); colon != std::string::npos) name[colon] = '.';
+    real.insert(name);
+  }
+  for (const char* owner : {"sim", "body", "part", "joint", "motor", "shape", "osc"}) {
+    for (const auto& [field, about] : read.classes[owner].fields) {
+      EXPECT_TRUE(real.contains(std::string(owner) + "." + field)) << owner << "." << field;
+    }
+    for (const auto& [name, function] : read.classes[owner].functions) {
+      EXPECT_TRUE(real.contains(std::string(owner) + "." + name)) << owner << ":" << name;
+    }
+  }
+}
+
+TEST_F(Annotate, ValuesHaveTheMembersThatAreSaid) {
+  // an instance of each that names() does not list; what an unknown member's error offers must be documented
+  const std::pair<const char*, const char*> kValues[] = {{"vec3", "vec3()"},
+                                                         {"quat", "quat()"},
+                                                         {"rng", "rng"},
+                                                         {"timer", "sim:after(1, print)"},
+                                                         {"address", "osc:to('127.0.0.1:9')"},
+                                                         {"link", "body:link('base')"}};
+  Stage stage;
+  stage.write("urdf/one.urdf", R"(<robot name="one"><link name="base"/></robot>)");
+  ASSERT_EQ(stage.run("body = sim:load_urdf('urdf/one.urdf')"), "");
+  for (const auto& [name, expression] : kValues) {
+    const luacats::Class& said = read.classes[name];
+    std::vector<std::string> members;
+    for (const auto& [field, about] : said.fields) members.push_back(field);
+    for (const auto& [method, function] : said.functions) members.push_back(method);
+    ASSERT_FALSE(members.empty()) << name;
+    for (const std::string& member : members) {
+      const Evaluation found = stage.scene.evaluate(std::string("(") + expression + ")." + member);
+      EXPECT_EQ(found.kind, Evaluation::Kind::value) << name << "." << member << ": " << found.text;
+    }
+    const std::string error = first_line(stage.scene.evaluate(std::string("(") + expression + ").zzzzz").text);
+    const std::size_t list = error.find("there are: ");
+    ASSERT_NE(list, std::string::npos) << error;
+    std::string offered = error.substr(list + 11);
+    for (char& c : offered) c = c == ',' ? ' ' : c;
+    for (const std::string_view member : split(offered, ' ')) {
+      EXPECT_TRUE(member.empty() || has(name, std::string(member))) << name << " has " << member;
+    }
+  }
+}
+
+TEST_F(Annotate, EveryRowHasTypeUnitRangeDefaultAndMeaning) {
+  const std::pair<const char*, const Table*> kClasses[] = {{"sim", &World::table()},   {"body", &Body::table()},
+                                                           {"part", &Part::table()},   {"joint", &Joint::table()},
+                                                           {"motor", &Motor::table()}, {"shape", &Shape::table()}};
+  std::size_t seen = 0;
+  for (const auto& [name, table] : kClasses) {
+    const luacats::Class& said = read.classes[name];
+    for (const Row& row : table->rows()) {
+      seen++;
+      if (row.kind == RowKind::action) {
+        EXPECT_NE(said.functions.at(row.name).doc.find(row.doc), std::string::npos) << row.name;
+        continue;
+      }
+      const std::string& about = said.fields.at(row.name);
+      const std::size_t words = about.find(" # ");
+      ASSERT_NE(words, std::string::npos) << row.name;
+      EXPECT_NE(about.find(row.doc, words), std::string::npos) << about;
+      EXPECT_NE(about.find(row.unit, words), std::string::npos) << about;
+      EXPECT_EQ(about.find("# read-only") != std::string::npos, !row.writable()) << about;
+      const bool has_default = about.find("default " + initial_text(row) + ".") != std::string::npos;
+      EXPECT_EQ(has_default, row.kind == RowKind::property) << about;
+      const bool counts = row.type == RowType::number || row.type == RowType::vec3 || row.type == RowType::integer;
+      const bool ranged = about.find(" .. ") != std::string::npos;
+      EXPECT_TRUE(ranged || !row.writable() || !counts || !std::isfinite(row.max)) << about;
+      for (const std::string& choice : row.choices) EXPECT_LT(about.find("\"" + choice + "\""), words) << about;
+      // what can be set can be an option
+      const std::string options = std::string(name) + "_opts";
+      EXPECT_TRUE(has(options, row.name) || !row.writable() || !read.classes.contains(options)) << row.name;
+    }
+  }
+  EXPECT_GT(seen, 70U);
+  EXPECT_TRUE(read.classes["motor"].fields["angular_servo_position"].starts_with("vec3like|number # rad, "));
+}
+
+TEST_F(Annotate, EveryFunctionSaysWhatItIsFor) {
+  for (const auto& [owner, each] : read.classes) {
+    for (const auto& [name, function] : each.functions) EXPECT_NE(function.doc, "") << owner << ":" << name;
+  }
+  for (const auto& [name, function] : read.functions) EXPECT_NE(function.doc, "") << name;
+}
+
+TEST(LuaCats, PlantedFaultsAreFound) {
+  const auto complaints = [](const std::string& text) {
+    return luacats::Reader("---@meta\n\n" + text).complaints.size();
+  };
+  EXPECT_EQ(complaints("---@class a\n---@field b number # kg. Good.\nlocal a_ = {}\n"), 0U);
+  for (const char* wrong :
+       {"---@class a\n---@field b\n", "---@class a\n---@field b numbr\n", "---@class a\n---@field b number kg\n",
+        "---@field b number\n", "---@class a\n---@class a\n", "---@class a\n---@field b number|\n",
+        "---@class a\n---@field b fun(x\n", "---@class a\n---@field b \"x\n", "---@param x number\nfunction f(y) end\n",
+        "---@param x number\n\n", "---@return\nfunction f() end\n", "---@retrun number\n", "function f()\n", "x = 3\n",
+        "---@class a\n---@operator pow(number): a\n", "---@class a: b\n", "---@alias x\n"}) {
+    EXPECT_GE(complaints(wrong), 1U) << wrong;
+  }
+}
+
+}  // namespace
+}  // namespace limber

@@ -1,0 +1,187 @@
+// Guarded calls: what takes too long or eats memory is stopped, what a failing call did is taken back, and others play
+// on; draft and live; calls from C++.
+#include "script/guard.h"
+
+#include <gtest/gtest.h>
+
+#include <cstring>
+#include <memory>
+
+#include <fmt/format.h>
+#include <lua.hpp>
+
+#include "script/context.h"
+#include "script/vm.h"
+#include "stage.h"
+
+namespace limber {
+namespace {
+
+using Lines = std::vector<std::string>;
+
+constexpr double kQuick = 5 * kBudgetScale;
+
+SceneOptions quick(double call_ms = kQuick) {
+  SceneOptions options;
+  options.limits.call_ms = call_ms;
+  options.limits.run_ms = 40 * kBudgetScale;
+  return options;
+}
+
+std::string stopped(double ms) {
+  return fmt::format(
+      "stopped after {:g} ms of computing; look for a loop without an end, or spread the work over several steps", ms);
+}
+
+TEST(Guard, ACompiledLoopIsStopped) {
+  Stage stage(quick());
+  ASSERT_EQ(stage.play(R"(
+sim:on_step(function()
+  print("in")
+  while true do end
+end)
+sim:on_step(function() print("alive") end)
+)",
+                       3),
+            "");
+  EXPECT_EQ(stage.host.printed, (Lines{"in", "alive", "alive", "alive"}));
+  ASSERT_EQ(stage.host.faults.size(), 1u);
+  EXPECT_EQ(stage.host.faults[0].file, "scripts/scene.lua");
+  EXPECT_EQ(stage.host.faults[0].line, 4);
+  EXPECT_EQ(stage.host.faults[0].text, "scripts/scene.lua:4: " + stopped(kQuick) +
+                                           "\n  4 |   while true do end\nstack traceback:\n"
+                                           "  scripts/scene.lua:4: in the function of line 2");
+}
+
+TEST(Guard, ARunIsStopped) {
+  Stage stage(quick());
+  EXPECT_EQ(first_line(stage.run("local i = 0\nrepeat i = i + 1 until i < 0")),
+            fmt::format("scripts/scene.lua:2: stopped after {:g} s of computing; look for a loop without an end",
+                        0.04 * kBudgetScale));
+}
+
+TEST(Guard, WhatPcallCatchesIsRaisedAgain) {
+  Stage stage(quick());
+  ASSERT_EQ(stage.play(R"(
+sim:on_step(function()
+  while true do
+    pcall(function() while true do end end)
+  end
+end)
+sim:on_step(function() return pcall(function() while true do end end) end)
+)",
+                       2),
+            "");
+  ASSERT_EQ(stage.host.faults.size(), 2u);
+  // the line where it was met first
+  EXPECT_EQ(first_line(stage.host.faults[0].text), "scripts/scene.lua:4: " + stopped(kQuick));
+  EXPECT_EQ(first_line(stage.host.faults[1].text), "scripts/scene.lua:7: " + stopped(kQuick));
+}
+
+// what is taken back, seen from outside
+constexpr const char* kTwoBalls = R"(
+sim.gravity = vec3(0, 0, -9.81)
+local shape = sim:add_sphere_shape("ball", 0.1)
+local ball = sim:add_body("ball"):add_part("ball", shape, { position = { 0, 0, 1 } })
+local other = sim:add_body("other"):add_part("other", shape, { position = { 3, 0, 1 } })
+sim:on_step(function() ball:apply_force(vec3(0, 0, 9)) rng:uniform() end)
+)";
+
+std::uint64_t hash_after(const std::string& more, std::size_t faults) {
+  Stage stage(quick());
+  EXPECT_EQ(stage.play(std::string(kTwoBalls) + more, 30), "");
+  EXPECT_EQ(stage.host.faults.size(), faults);
+  EXPECT_TRUE(stage.host.sent.empty());
+  return stage.scene.state_hash(stage.world.state_hash());
+}
+
+TEST(Guard, AFailingCallIsTakenBack) {
+  const std::uint64_t alone = hash_after("", 0);
+  const std::vector<std::string> deeds = {
+      "ball:apply_force(vec3(5, 0, 0))",
+      "ball:apply_impulse(vec3(1, 1, 1), vec3(0, 0, 0.9)) ball:apply_torque(vec3(0, 1, 0))",
+      "ball.position = vec3(0, 0, 2) ball.rotation = quat.euler(0.1, 0.2, 0.3)",
+      "ball.linear_velocity = vec3(1, 0, 0) other.angular_velocity = vec3(0, 9, 0)",
+      "ball.mass = 5 ball.friction = 0 sim.gravity = vec3() sim.substeps = 1",
+      "ball.body.position = vec3(0, 1, 1) ball.body.rotation = quat.euler(0, 0, 1)",
+      "ball.body.linear_velocity = vec3(0, 1, 1) ball.body.enabled = false",
+      "ball.body:reset()",
+      "ball.body:remove()",
+      "other.body:remove() sim:add_body('other'):add_part('p', shape)",
+      "sim:add_body('new'):add_part('p', shape, { position = { 0, 0, 1.1 } })",
+      "local n = ball.body:copy('new') n.position = vec3(0, 0, 1.1) n:copy('newer') n:remove()",
+      "ball.position = vec3(1, 1, 1) ball.body:copy('new')",
+      "local p = ball.body:add_part('p', shape, { position = { 0, 0, 2 } }) ball.position = vec3(0, 1, 1) "
+      "ball.body:add_motor(ball.body:add_joint('j', ball, p))",
+      "sim:add_compound_shape('c'):add_child(shape)",
+      "rng:uniform() math.random()",
+      "osc:send('/a', 1) sim:reset()",
+      "sim:on_step(function() ball:apply_force(vec3(9, 0, 0)) end) sim:after(0.1, function() error('late') end)",
+  };
+  for (const std::string& deed : deeds) {
+    EXPECT_EQ(hash_after("sim:at(0.1, function() " + deed + " error('x') end)", 1), alone) << deed;
+    EXPECT_EQ(hash_after("sim:at(0.1, function() " + deed + " while true do end end)", 1), alone) << deed;
+  }
+}
+
+TEST(Guard, AGoodCallStays) {
+  // each of the deeds above that moves something would be seen
+  const std::uint64_t alone = hash_after("", 0);
+  for (const char* deed : {"ball:apply_force(vec3(5, 0, 0))", "ball.position = vec3(0, 0, 2)", "ball.mass = 5",
+                           "other.body:remove()", "rng:uniform()"}) {
+    EXPECT_NE(hash_after("sim:at(0.1, function() " + std::string(deed) + " end)", 0), alone) << deed;
+  }
+}
+
+TEST(Guard, CallsFromCpp) {
+  Stage ground;
+  ScriptContext context(ground.world, ground.host, quick());
+  Vm vm(context, VmMode::draft);
+  lua_State* const L = vm.state();
+  ASSERT_EQ(vm.mode(), VmMode::draft);
+  const auto push = [&](const char* text) { ASSERT_EQ(luaL_loadbuffer(L, text, std::strlen(text), "@mine.lua"), 0); };
+  push("local a, b = ... return a + b, a * b");
+  lua_pushnumber(L, 3);
+  lua_pushnumber(L, 4);
+  ASSERT_TRUE(vm.guard().call(2, 2));
+  ASSERT_EQ(lua_gettop(L), 2);
+  EXPECT_EQ(lua_tonumber(L, -2), 7);
+  EXPECT_EQ(lua_tonumber(L, -1), 12);
+  lua_settop(L, 0);
+
+  push("\n\nlocal a = nil\nreturn a.b");
+  EXPECT_FALSE(vm.guard().call(0, 1));
+  EXPECT_EQ(lua_gettop(L), 0);
+  EXPECT_EQ(vm.guard().fault().file, "mine.lua");
+  EXPECT_EQ(vm.guard().fault().line, 4);
+  EXPECT_FALSE(vm.guard().fault().stopped);
+
+  // a draft has no compiled code, and its loops are stopped as well
+  push("\nwhile true do end");
+  EXPECT_FALSE(vm.guard().call(0, 0));
+  EXPECT_EQ(vm.guard().fault().line, 2);
+  EXPECT_TRUE(vm.guard().fault().stopped);
+  EXPECT_EQ(first_line(vm.guard().fault().text), "mine.lua:2: " + stopped(kQuick));
+}
+
+TEST(Guard, OneIsLiveAtATime) {
+  Stage first(quick());
+  EXPECT_EQ(first.scene.mode(), VmMode::live);
+  auto second = std::make_unique<Stage>(quick(), true);
+  EXPECT_EQ(second->scene.mode(), VmMode::draft);
+  EXPECT_FALSE(second->scene.arm());
+  first.scene.disarm();
+  EXPECT_TRUE(second->scene.arm());
+  EXPECT_EQ(second->scene.mode(), VmMode::live);
+  EXPECT_FALSE(first.scene.arm());
+  const char* const kEndless = "sim:on_start(function() while true do end end)";
+  ASSERT_EQ(first.play(kEndless), "");
+  ASSERT_EQ(second->play(kEndless), "");
+  EXPECT_EQ(first.host.faults.size(), 1u);
+  EXPECT_EQ(second->host.faults.size(), 1u);
+  second.reset();
+  EXPECT_TRUE(first.scene.arm());
+}
+
+}  // namespace
+}  // namespace limber

@@ -1,0 +1,3 @@
+-- The same by the separator.
+-- expect: 3: string.rep makes texts of up to 8 MB
+sim:on_step(function() local text = (""):rep(1e9, "xx") end)

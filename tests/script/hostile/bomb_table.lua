@@ -1,0 +1,7 @@
+-- A table that grows.
+-- limits: call_ms=500 memory=16
+-- expect: 6: stopped: scripts may hold
+sim:on_step(function()
+  local t = {}
+  for i = 1, math.huge do t[i] = i end
+end)

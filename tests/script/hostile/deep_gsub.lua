@@ -1,0 +1,5 @@
+-- gsub inside gsub.
+-- limits: call_ms=200
+-- expect: 4: stack overflow
+local function f() return (("x"):gsub("x", f)) end
+sim:on_step(function() f() end)

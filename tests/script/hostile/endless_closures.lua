@@ -1,0 +1,6 @@
+-- Functions are made for ever.
+-- expect: 5: stopped
+sim:on_step(function()
+  local f
+  while true do local before = f f = function() return before end end
+end)

@@ -1,0 +1,9 @@
+-- A coroutine that began well in one tick loops in a later one.
+-- expect: 6: stopped after
+local co = coroutine.wrap(function()
+  for i = 1, 5 do coroutine.yield(i) end
+  while true do
+    local x = 1
+  end
+end)
+sim:on_step(function() co() end)

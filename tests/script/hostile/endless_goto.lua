@@ -1,0 +1,6 @@
+-- A jump to itself.
+-- expect: 5: stopped after
+sim:on_step(function()
+  ::again::
+  goto again
+end)

@@ -1,0 +1,5 @@
+-- A replacing function that never ends.
+-- expect: 4: stopped after
+sim:on_step(function()
+  local text = ("abc"):gsub("%w", function() while true do end end)
+end)

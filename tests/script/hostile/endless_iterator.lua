@@ -1,0 +1,5 @@
+-- An iterator that always has one more.
+-- expect: 4: stopped after
+sim:on_step(function()
+  for x in function() return 1 end do local y = x end
+end)

@@ -1,0 +1,7 @@
+-- Walks lists by patterns for ever.
+-- expect: 4-5: stopped
+sim:on_step(function()
+  while true do
+    for part in sim:body("healthy"):parts("*") do local name = part.name end
+  end
+end)

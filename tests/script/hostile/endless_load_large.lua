@@ -1,0 +1,13 @@
+-- Texts whose jumps take the compiler long: of so many jumps that it is refused, and of as many as may be.
+-- expect: 10-13: stopped
+local function text_of(jumps)
+  local lines = { "local a while true do" }
+  for i = 1, jumps do lines[#lines + 1] = "if a then break end" end
+  lines[#lines + 1] = "end"
+  return table.concat(lines, "\n")
+end
+sim:on_step(function()
+  local large, small = text_of(8000), text_of(1990)
+  assert(load(large) == nil)
+  while true do load(small) end
+end)

@@ -1,0 +1,9 @@
+-- Makes bodies for ever, in the middle of the others.
+-- expect: 4-7: stopped
+sim:on_step(function()
+  local n = 0
+  while true do
+    n = n + 1
+    sim:body("healthy"):copy("new " .. n)
+  end
+end)

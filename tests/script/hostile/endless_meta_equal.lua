@@ -1,0 +1,4 @@
+-- A metamethod that never ends: __eq.
+-- expect: 3: stopped after
+local t = setmetatable({}, { __eq = function() while true do end end })
+sim:on_step(function() local x = t == setmetatable({}, getmetatable(t)) end)

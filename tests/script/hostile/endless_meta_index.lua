@@ -1,0 +1,4 @@
+-- A metamethod that never ends: __index.
+-- expect: 3: stopped after
+local t = setmetatable({}, { __index = function() while true do end end })
+sim:on_step(function() local x = t.a end)

@@ -1,0 +1,6 @@
+-- pairs over a table that grows meanwhile, again and again.
+-- expect: 4-5: stopped
+sim:on_step(function()
+  local t = { 1 }
+  while true do for k in pairs(t) do t[#t + 1] = k end end
+end)

@@ -1,0 +1,6 @@
+-- A pattern that would take longer than anybody lives.
+-- limits: call_ms=200
+-- expect: 4: this pattern takes too many steps
+sim:on_step(function()
+  return (("a"):rep(5000)):find(("a*"):rep(50) .. "b")
+end)

@@ -1,0 +1,7 @@
+-- What stops it is caught, again and again.
+-- expect: 4-5: stopped after
+sim:on_step(function()
+  while true do
+    pcall(function() while true do end end)
+  end
+end)

@@ -1,0 +1,6 @@
+-- A text that grows by a letter.
+-- expect: 4-5: stopped
+sim:on_step(function()
+  local text = ""
+  while true do text = text .. "x" end
+end)

@@ -1,0 +1,6 @@
+-- Two functions that hand over to each other.
+-- expect: 3-5: stopped after
+local f, g
+f = function() return g() end
+g = function() return f() end
+sim:on_step(function() f() end)

@@ -1,0 +1,4 @@
+-- __tostring never ends.
+-- expect: 3: stopped after
+local t = setmetatable({}, { __tostring = function() while true do end end })
+sim:on_step(function() local text = tostring(t) end)

@@ -1,0 +1,5 @@
+-- Cancels another's timer, then errs: the timer goes on.
+-- expect: 5: on purpose
+-- printed: 9
+local timer = sim:every(1, function() print("beat") end)
+sim:on_step(function() timer:cancel() error("on purpose") end)

@@ -1,0 +1,3 @@
+-- A function that is not there.
+-- expect: 3: has no property
+sim:on_step(function() sim:body("healthy").root.jump() end)

@@ -1,0 +1,3 @@
+-- Text that does not compile, asserted.
+-- expect: 3: unexpected symbol near
+sim:on_step(function() assert(load("x = = 1")) end)

@@ -1,0 +1,21 @@
+-- Numbers at the edges of integers.
+sim:on_step(function()
+  for _, n in ipairs { 2 ^ 31, -2 ^ 31, 2 ^ 53, -2 ^ 63, 1e300, -1e300, 4294967296 } do
+    pcall(table.insert, {}, n, 1)
+    pcall(table.remove, {}, n)
+    pcall(table.concat, {}, "", n, -n)
+    pcall(unpack, {}, n, -n)
+    pcall(unpack, {}, 1, n)
+    pcall(string.byte, "abc", n, -n)
+    pcall(string.sub, "abc", n, -n)
+    pcall(string.find, "abc", "b", n)
+    pcall(string.gsub, "abc", "b", "x", n)
+    pcall(string.char, n)
+    pcall(select, n, 1)
+    pcall(tonumber, "7", n)
+    pcall(bit.tohex, n, n)
+    pcall(math.ldexp, 1, n)
+    pcall(string.format, "%d %x %c", n, n, n)
+    pcall(setmetatable, {}, n)
+  end
+end)

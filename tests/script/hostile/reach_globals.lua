@@ -1,0 +1,7 @@
+-- Names that are not there.
+sim:on_step(function()
+  for _, name in ipairs { "os", "io", "ffi", "debug", "jit", "package", "module", "dofile", "loadfile", "getfenv",
+    "setfenv", "newproxy", "gcinfo", "next", "_G" } do
+    assert(not pcall(load("return " .. name)), name)
+  end
+end)

@@ -1,0 +1,121 @@
+// The watchdog: a call that computes too long hears of it, one that waits does not, and a late signal harms nobody.
+#include "script/watchdog.h"
+
+#include <gtest/gtest.h>
+
+#include <ctime>
+#include <thread>
+
+namespace limber {
+namespace {
+
+constexpr std::int64_t kMillisecond = 1'000'000;
+
+std::int64_t cpu_now() {
+  timespec time{};
+  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &time);
+  return std::int64_t{time.tv_sec} * 1'000'000'000 + time.tv_nsec;
+}
+
+// computes until `end` says so, or for a second
+template <class F>
+bool compute_until(F&& end) {
+  const std::int64_t begin = cpu_now();
+  while (!end()) {
+    if (cpu_now() - begin > 1000 * kMillisecond) return false;
+  }
+  return true;
+}
+
+struct WatchdogTest : testing::Test {
+  void SetUp() override {
+    watch.owner = this;
+    watch.stop = [](Watch& w) {
+      volatile int& stops = static_cast<WatchdogTest*>(w.owner)->stops;
+      stops = stops + 1;
+    };
+    dog->add(watch, kMillisecond / 2);
+  }
+  void TearDown() override { dog->remove(watch); }
+  bool stopped() const { return *static_cast<const volatile int*>(&stops) > 0; }
+  std::shared_ptr<Watchdog> dog = Watchdog::instance();
+  Watch watch;
+  int stops = 0;
+};
+
+TEST_F(WatchdogTest, StopsWhatComputesTooLong) {
+  const std::int64_t begin = cpu_now();
+  watch.begin(3 * kMillisecond);
+  EXPECT_FALSE(watch.stop_asked());
+  EXPECT_TRUE(compute_until([&] { return stopped(); }));
+  EXPECT_TRUE(watch.stop_asked());
+  watch.end();
+  EXPECT_FALSE(watch.stop_asked());
+  EXPECT_GE(cpu_now() - begin, 3 * kMillisecond);  // never early
+}
+
+TEST_F(WatchdogTest, IsAskedAgainUntilTheCallReturns) {
+  watch.begin(kMillisecond);
+  EXPECT_TRUE(compute_until([&] { return *static_cast<volatile int*>(&stops) >= 3; }));
+  watch.end();
+}
+
+TEST_F(WatchdogTest, EachCallHasItsOwnTime) {
+  // many short ones, that take longer together than one may
+  const std::int64_t begin = cpu_now();
+  while (cpu_now() - begin < 60 * kMillisecond) {
+    watch.begin(30 * kMillisecond);
+    watch.end();
+  }
+  EXPECT_EQ(stops, 0);
+}
+
+TEST_F(WatchdogTest, WaitingIsNotComputing) {
+  // this thread waits while another one computes ten times what the call may
+  watch.begin(3 * kMillisecond);
+  std::thread([] {
+    const std::int64_t begin = cpu_now();
+    while (cpu_now() - begin < 30 * kMillisecond) continue;
+  }).join();
+  EXPECT_FALSE(stopped());
+  watch.end();
+}
+
+TEST_F(WatchdogTest, FollowsTheThreadOfTheCall) {
+  std::thread other([&] {
+    watch.begin(2 * kMillisecond);
+    EXPECT_TRUE(compute_until([&] { return stopped(); }));
+    watch.end();
+  });
+  other.join();
+  // the thread has gone; the watch goes on with the next one
+  stops = 0;
+  watch.begin(2 * kMillisecond);
+  EXPECT_TRUE(compute_until([&] { return stopped(); }));
+  watch.end();
+}
+
+TEST_F(WatchdogTest, TwoWatchesDoNotMeet) {
+  Watch second;
+  second.owner = this;
+  second.stop = [](Watch&) { ADD_FAILURE() << "the other one was stopped"; };
+  dog->add(second, kMillisecond / 2);
+  second.begin(1000 * kMillisecond);
+  second.end();
+  watch.begin(2 * kMillisecond);
+  EXPECT_TRUE(compute_until([&] { return stopped(); }));
+  watch.end();
+  dog->remove(second);
+}
+
+TEST(Watchdog, IsOneAndEndsWithItsLastHolder) {
+  auto one = Watchdog::instance();
+  const auto two = Watchdog::instance();
+  EXPECT_EQ(one, two);
+  const std::weak_ptr<Watchdog> known = one;
+  one.reset();
+  EXPECT_FALSE(known.expired());
+}
+
+}  // namespace
+}  // namespace limber

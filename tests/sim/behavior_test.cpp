@@ -1,0 +1,178 @@
+// What every behaviour has: targets, start, intervals, generator, errors, time.
+#include "sim/behavior.h"
+
+#include "sim/behavior_rig.h"
+
+namespace limber {
+namespace {
+
+using namespace test;
+
+TEST(Behavior, TargetsAreInStreamOrderEachOnce) {
+  BehaviorRig s;
+  Body& body = s.chain("b", {"base", "left", "right", "tip"});
+  const auto parts = [&](Words words) {
+    Probe& p = s.probe(body, "p", on_parts(std::move(words)));
+    const Words names = names_in(p.parts());
+    s.list().remove(p);
+    return names;
+  };
+  EXPECT_EQ(parts({"tip", "base"}), (Words{"base", "tip"}));
+  EXPECT_EQ(parts({"tip", "t*", "tip"}), (Words{"tip"}));
+  EXPECT_EQ(parts({"{left,right}"}), (Words{"left", "right"}));
+  EXPECT_EQ(parts({"none*"}), Words{});
+  EXPECT_EQ(parts({}), Words{});
+  Probe& all = s.probe(body, "all");
+  EXPECT_EQ(names_in(all.parts()), (Words{"base", "left", "right", "tip"}));
+  EXPECT_EQ(names_in(all.joints()), (Words{"to_left", "to_right", "to_tip"}));
+  EXPECT_EQ(names_in(all.motors()), (Words{"to_left", "to_right", "to_tip"}));
+}
+
+TEST(Behavior, AllLeavesOutPartsWithoutMass) {
+  BehaviorRig s;
+  Body& body = s.chain("b", {"base", "tip"}, 0);
+  EXPECT_EQ(names_in(s.probe(body, "p").parts()), (Words{"tip"}));
+  EXPECT_EQ(names_in(s.probe(body, "q", on_parts({"all"})).parts()), (Words{"tip"}));
+  EXPECT_EQ(names_in(s.probe(body, "r", on_parts({"all", "base"})).parts()), (Words{"base", "tip"}));
+  EXPECT_EQ(names_in(s.probe(body, "t", on_parts({"*"})).parts()), (Words{"base", "tip"}));
+}
+
+TEST(Behavior, StartsBeforeItsFirstStepAndWhenItsTargetsHaveChanged) {
+  BehaviorRig s;
+  Body& body = s.chain("b", {"base"});
+  s.probe(body, "all");
+  s.probe(body, "named", on_parts({"base"}));
+  s.ticks(2);
+  EXPECT_EQ(BehaviorRig::take_diary(),
+            (Words{"start b/all", "step b/all", "start b/named", "step b/named", "step b/all", "step b/named"}));
+  ASSERT_TRUE(body.add_part("tip", s.shape(sphere_model(0.1)), 1, Pose{}).ok());
+  s.ticks(1);
+  EXPECT_EQ(BehaviorRig::take_diary(), (Words{"start b/all", "step b/all", "step b/named"}));
+  body.reset();
+  s.ticks(1);
+  EXPECT_EQ(BehaviorRig::take_diary(), (Words{"start b/all", "step b/all", "start b/named", "step b/named"}));
+}
+
+TEST(Behavior, RestsWhileInactiveOrItsBodyIsOut) {
+  BehaviorRig s;
+  Body& body = s.chain("b", {"base"});
+  Probe& p = s.probe(body, "p");
+  s.set(p.id(), "active", {0});
+  s.ticks(2);
+  EXPECT_EQ(BehaviorRig::take_diary(), Words{});
+  s.set(p.id(), "active", {1});
+  body.set_enabled(false);
+  s.ticks(2);
+  EXPECT_EQ(BehaviorRig::take_diary(), Words{});
+  body.set_enabled(true);
+  s.ticks(1);
+  EXPECT_EQ(BehaviorRig::take_diary(), (Words{"start b/p", "step b/p"}));
+}
+
+TEST(Behavior, AnErrorSuspendsItAloneAndIsSaidOnce) {
+  BehaviorRig s;
+  Body& body = s.chain("b", {"base"});
+  Probe& one = s.probe(body, "one");
+  s.probe(body, "two");
+  std::vector<std::string> said;
+  s.list().on_fault([&](const Behavior& b) { said.push_back(b.name() + ": " + b.fault().file + " " + b.error()); });
+  s.set(one.id(), "broken", {1});
+  s.ticks(3);
+  EXPECT_EQ(said, (Words{"one: probe.lua it is broken"}));
+  EXPECT_EQ(one.error(), "it is broken");
+  EXPECT_EQ(one.fault().line, 7);
+  EXPECT_TRUE(one.active());
+  EXPECT_FALSE(one.runs());
+  EXPECT_EQ(std::count(Probe::diary.begin(), Probe::diary.end(), "step b/two"), 3);
+  // any write to `active` tries again, also the value that it has; start is not called again
+  BehaviorRig::take_diary();
+  s.set(one.id(), "broken", {0});
+  s.ticks(1);
+  EXPECT_EQ(BehaviorRig::take_diary(), (Words{"step b/two"}));
+  s.set(one.id(), "active", {1});
+  EXPECT_EQ(one.error(), "");
+  s.ticks(1);
+  EXPECT_EQ(BehaviorRig::take_diary(), (Words{"step b/one", "step b/two"}));
+}
+
+// 250 ticks of 4 ms: an interval of 10 ms fires 100 times; one that is shorter than a tick at every tick
+TEST(Behavior, IntervalsAreSimulatedTimeWithTheirPhaseKept) {
+  for (const auto& [interval, beats] : std::vector<std::pair<double, int>>{
+           {10, 100}, {4, 250}, {0, 250}, {0.1, 250}, {4.1, 243}, {33, 31}, {500, 2}, {1000, 1}}) {
+    BehaviorRig s;
+    s.set(s.world.id(), "timestep", {0.004});
+    Probe& p = s.probe(s.chain("b", {"base"}), "p");
+    s.set(p.id(), "beat", {interval});
+    s.ticks(250);
+    EXPECT_EQ(p.beats, beats) << interval;
+  }
+}
+
+TEST(Behavior, AnIntervalThatChangesCountsFromTheLastBeat) {
+  BehaviorRig s;
+  s.set(s.world.id(), "timestep", {0.01});
+  Probe& p = s.probe(s.chain("b", {"base"}), "p");  // 100 ms: at 0, 100, 200 …
+  s.ticks(15);                                      // 0 .. 140 ms
+  EXPECT_EQ(p.beats, 2);
+  s.set(p.id(), "beat", {30});  // from 100 on: 130 has passed, 160, 190, 220
+  s.ticks(1);
+  EXPECT_EQ(p.beats, 3);
+  s.ticks(1);  // 160
+  EXPECT_EQ(p.beats, 4);
+  s.ticks(3);  // .. 190
+  EXPECT_EQ(p.beats, 5);
+  s.set(p.id(), "beat", {1000});
+  s.ticks(99);  // .. 1180; from 190 on: 1190
+  EXPECT_EQ(p.beats, 5);
+  s.ticks(1);
+  EXPECT_EQ(p.beats, 6);
+}
+
+TEST(Behavior, ItsGeneratorIsOfTheSeedAndItsPath) {
+  BehaviorRig s;
+  Body& a = s.chain("a", {"base"});
+  Body& b = s.chain("b", {"base"});
+  Probe& one = s.probe(a, "one");
+  Probe& two = s.probe(b, "one");
+  s.ticks(1);
+  EXPECT_EQ(one.last, Random(1, "/physics/body/a/behavior/one").uniform());
+  EXPECT_EQ(two.last, Random(1, "/physics/body/b/behavior/one").uniform());
+  s.ticks(3);
+  s.set(s.world.id(), "seed", {77});
+  s.ticks(1);
+  EXPECT_EQ(one.last, Random(77, "/physics/body/a/behavior/one").uniform());
+  s.ticks(3);
+  a.reset();
+  s.ticks(1);
+  EXPECT_EQ(one.last, Random(77, "/physics/body/a/behavior/one").uniform());
+  EXPECT_NE(two.last, Random(77, "/physics/body/b/behavior/one").uniform());
+}
+
+TEST(Behavior, ParametersGeneratorAndBeatsAreInTheHash) {
+  const auto hash = [](const std::function<void(BehaviorRig&, Probe&)>& change) {
+    BehaviorRig s;
+    Probe& p = s.probe(s.chain("b", {"base"}), "p");
+    s.ticks(2);
+    change(s, p);
+    return s.world.state_hash();
+  };
+  const std::uint64_t plain = hash([](BehaviorRig&, Probe&) {});
+  EXPECT_EQ(plain, hash([](BehaviorRig&, Probe&) {}));
+  EXPECT_NE(plain, hash([](BehaviorRig& s, Probe& p) { s.set(p.id(), "amount", {3}); }));
+  EXPECT_NE(plain, hash([](BehaviorRig& s, Probe& p) { s.set(p.id(), "active", {0}); }));
+  EXPECT_NE(plain, hash([](BehaviorRig&, Probe& p) { p.random().next(); }));
+  EXPECT_NE(plain, hash([](BehaviorRig& s, Probe& p) { s.list().remove(p); }));
+}
+
+TEST(Behavior, TellsTheTimeThatItTook) {
+  BehaviorRig s;
+  Probe& p = s.probe(s.chain("b", {"base"}), "p");
+  s.ticks(1);
+  const double took = s.number(p.id(), "time");
+  EXPECT_GT(took, 0);
+  EXPECT_EQ(took, p.microseconds());
+  EXPECT_GE(s.world.times().behaviors, 1e-6 * took);
+}
+
+}  // namespace
+}  // namespace limber

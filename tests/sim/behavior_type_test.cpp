@@ -1,0 +1,121 @@
+// Types: the naming rule, adding, replacing, removing, renewing instances.
+#include "sim/behavior_type.h"
+
+#include "sim/behavior_rig.h"
+
+namespace limber {
+namespace {
+
+using namespace test;
+
+BehaviorType probe_type(std::string name, std::vector<Row> rows = probe_rows()) {
+  return BehaviorType::of<Probe>(std::move(name), "A probe.", BehaviorTargets::any, std::move(rows));
+}
+
+TEST(BehaviorTypes, AreFoundWithoutCaseUnderscoresAndTheSeedsEnding) {
+  BehaviorTypes types;
+  ASSERT_TRUE(types.add(probe_type("random_force")).ok());
+  for (const char* name :
+       {"random_force", "RandomForce", "randomforce", "RandomForceBehavior", "RANDOM_FORCE_BEHAVIOR"})
+    EXPECT_NE(types.find(name), nullptr) << name;
+  EXPECT_EQ(types.find("random"), nullptr);
+  EXPECT_EQ(types.find("behavior"), nullptr);
+  EXPECT_EQ(types.require("RandomFroceBehavior").error(),
+            "there is no behavior type 'RandomFroceBehavior'; did you mean 'random_force'?");
+}
+
+TEST(BehaviorTypes, ANameIsReplacedAndRemoved) {
+  BehaviorTypes types;
+  ASSERT_TRUE(types.add(probe_type("wave")).ok());
+  const auto first = types.find("wave");
+  ASSERT_TRUE(types.add(probe_type("Wave")).ok());
+  EXPECT_EQ(types.all().size(), 1U + BehaviorTypes().all().size());
+  EXPECT_NE(types.find("wave"), first);
+  types.remove("WAVE");
+  EXPECT_EQ(types.find("wave"), nullptr);
+}
+
+TEST(BehaviorTypes, ABuiltInNameIsTaken) {
+  static const BuiltInBehavior registered([] { return probe_type("test_built_in"); });
+  BehaviorTypes types;
+  EXPECT_EQ(types.add(probe_type("TestBuiltIn")).error(),
+            "'TestBuiltIn' is a built-in behavior type ('test_built_in'); call the file something else");
+  types.remove("test_built_in");
+  EXPECT_NE(types.find("test_built_in"), nullptr);
+  EXPECT_FALSE(types.add(probe_type("")).ok());
+}
+
+TEST(BehaviorTypes, EqualTablesAreOne) {
+  EXPECT_EQ(probe_type("same").table, probe_type("same").table);
+  EXPECT_NE(probe_type("same").table, probe_type("other").table);
+}
+
+TEST(BehaviorTypes, RenewedInstancesKeepWhatBothTablesHave) {
+  BehaviorRig s;
+  Body& body = s.chain("b", {"base", "tip"});
+  Probe& before = s.probe(body, "p", on_parts({"tip"}));
+  s.probe(body, "other");
+  s.set(before.id(), "amount", {9});
+  s.set(before.id(), "way", {4, 5, 6});
+  s.set(before.id(), "active", {0});
+  s.set(before.id(), "active", {1});
+  s.ticks(3);
+  const auto generator = before.random().state();
+  const NodeId id_before = before.id();
+  // amount's range is narrower, way is a number now, a row came, beat stays
+  ASSERT_TRUE(s.types()
+                  .add(probe_type("probe", {rows::number("amount", "N", 1, -5, 5, "A number."),
+                                            rows::boolean("broken", false, "Whether it errs."),
+                                            rows::number("way", "m", 8, -100, 100, "A number now."),
+                                            rows::number("beat", "ms", 100, 0, 1e6, "An interval."),
+                                            rows::number("fresh", "", 3, 0, 9, "A new one.")}))
+                  .ok());
+  s.list().renew("probe");
+  Behavior& after = *body.find_behavior("p");
+  EXPECT_EQ(s.number(after.id(), "amount"), 5);
+  EXPECT_EQ(s.number(after.id(), "way"), 8);
+  EXPECT_EQ(s.number(after.id(), "fresh"), 3);
+  EXPECT_FALSE(s.store.alive(id_before));
+  EXPECT_EQ(after.random().state(), generator);
+  EXPECT_EQ(names_in(after.parts()), (Words{"tip"}));
+  EXPECT_EQ(names_in(body.behaviors()), (Words{"p", "other"}));
+  EXPECT_EQ(static_cast<Probe&>(after).beats, 101);
+  BehaviorRig::take_diary();
+  s.ticks(1);
+  EXPECT_EQ(BehaviorRig::take_diary(), (Words{"step b/p", "step b/other"}));
+}
+
+TEST(BehaviorTypes, RenewingWithTheSameRowsKeepsTheThing) {
+  BehaviorRig s;
+  Body& body = s.chain("b", {"base"});
+  Probe& before = s.probe(body, "p");
+  s.set(before.id(), "amount", {9});
+  const NodeId id = before.id();
+  ASSERT_TRUE(s.types().add(probe_type("probe")).ok());
+  s.list().renew("probe");
+  EXPECT_EQ(body.find_behavior("p")->id(), id);
+  EXPECT_EQ(s.number(id, "amount"), 9);
+}
+
+TEST(BehaviorTypes, GroupsAreRenewedWithTheirMembers) {
+  BehaviorRig s;
+  s.chain("a", {"base"});
+  s.chain("b", {"base"});
+  BehaviorGroup& group = s.group("g");
+  s.set(group.id(), "amount", {7});
+  s.set(s.world.find_body("a")->find_behavior("g")->id(), "amount", {8});
+  std::vector<Row> rows = probe_rows();
+  rows.push_back(rows::number("fresh", "", 3, 0, 9, "A new one."));
+  ASSERT_TRUE(s.types().add(BehaviorType::of_group<Probe>("probe_group", "Probes.", rows)).ok());
+  s.list().renew("probe_group");
+  EXPECT_EQ(s.number(group.id(), "amount"), 7);
+  s.set(group.id(), "fresh", {5});
+  for (const char* name : {"a", "b"}) {
+    const NodeId id = s.world.find_body(name)->find_behavior("g")->id();
+    EXPECT_EQ(s.number(id, "fresh"), 5);
+    EXPECT_EQ(s.number(id, "amount"), name[0] == 'a' ? 8 : 7);
+  }
+}
+
+}  // namespace
+}  // namespace limber
