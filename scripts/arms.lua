@@ -50,7 +50,7 @@ local function sway(arm, time, dt)
   arm.gust = arm.gust * math.exp(-dt / 1.5)
 end
 
-state.time = 0
+state.time = state.time or 0
 sim:on_step(function(dt)
   -- a phase that is summed up, so that a new speed does not make the arms jump
   state.time = state.time + 2 * math.pi * params.speed * dt

@@ -25,11 +25,13 @@ class ScriptHost {
   virtual void ask_reset() = 0;
   /// A script's fault, with file and line: log, panel, /script/error. Empty text: the file is mended.
   virtual void script_error(std::string_view file, int line, std::string_view text) = 0;
-  /// print(…): a line of text, as it is, to stdout.
+  /// print(…): a line of text, as it is, to stdout. A run beside the show prints too. [any]
   virtual void print(std::string_view text) {
+    flockfile(stdout);
     std::fwrite(text.data(), 1, text.size(), stdout);
     std::fputc('\n', stdout);
     std::fflush(stdout);
+    funlockfile(stdout);
   }
 };
 
