@@ -23,6 +23,14 @@ std::int32_t made(ScriptContext& c, const Result<T*>& thing) {
   return thing ? c.tell((*thing)->id()) : c.refuse(thing.error());
 }
 
+// a loop that makes things must not take the machine's memory before it is stopped
+bool is_full(ScriptContext& c) {
+  const std::size_t most = c.options.limits.things;
+  if (c.world->store().view()->slot_count < most) return false;
+  c.refuse(fmt::format("a scene may have {} things (bodies, their parts, joints and motors, shapes)", most));
+  return true;
+}
+
 // where a body's root goes: NaN means "as the model places it"
 void place(BuildOptions& build, const double* pose) {
   build.position.reset();
@@ -112,11 +120,13 @@ Result<std::shared_ptr<const BodyModel>> model_of_file(ScriptContext& c, std::st
 
 std::int32_t add_body(void* c, const char* name, std::int32_t length) {
   ScriptContext& context = context_of(c);
+  if (is_full(context)) return kRefused;
   return made(context, context.world->add_body(std::string(text_of(name, length))));
 }
 
 std::int32_t copy_body(void* c, std::int32_t slot, std::int32_t generation, const char* name, std::int32_t length) {
   ScriptContext& context = context_of(c);
+  if (is_full(context)) return kRefused;
   const Body* source = thing_of<Body>(context, id_of(slot, generation));
   if (source == nullptr) return kGone;
   return made(context, context.world->copy_body(*source, std::string(text_of(name, length))));
@@ -133,6 +143,7 @@ std::int32_t remove_body(void* c, std::int32_t slot, std::int32_t generation) {
 std::int32_t add_part(void* c, std::int32_t slot, std::int32_t generation, const char* name, std::int32_t length,
                       std::int32_t shape_slot, std::int32_t shape_generation, double mass, const double* pose) {
   ScriptContext& context = context_of(c);
+  if (is_full(context)) return kRefused;
   Body* body = thing_of<Body>(context, id_of(slot, generation));
   Shape* shape = thing_of<Shape>(context, id_of(shape_slot, shape_generation));
   if (body == nullptr || shape == nullptr) return kGone;
@@ -183,6 +194,7 @@ std::int32_t add_motor(void* c, std::int32_t slot, std::int32_t generation) {
 
 std::int32_t add_shape(void* c, const char* name, std::int32_t length, const char* kind, const double* n) {
   ScriptContext& context = context_of(c);
+  if (is_full(context)) return kRefused;
   const std::string_view wanted(kind);
   ShapeModel model;
   if (wanted == "plane") {
@@ -222,6 +234,7 @@ void mesh_point(void* c, double x, double y, double z) { context_of(c).mesh_poin
 std::int32_t add_mesh_shape(void* c, const char* name, std::int32_t length, const char* file, std::int32_t file_length,
                             double sx, double sy, double sz, std::int32_t max_vertices) {
   ScriptContext& context = context_of(c);
+  if (is_full(context)) return kRefused;
   const Vec3 scale(sx, sy, sz);
   ShapeModel model;
   model.kind = ShapeKind::mesh;
@@ -267,6 +280,7 @@ void urdf_package_path(void* c, const char* path, std::int32_t length) {
 std::int32_t load_urdf(void* c, const char* path, std::int32_t path_length, const char* name, std::int32_t length,
                        const double* pose) {
   ScriptContext& context = context_of(c);
+  if (is_full(context)) return kRefused;
   const auto model = model_of_file(context, text_of(path, path_length));
   if (!model) return context.refuse(model.error());
   place(context.build, pose);

@@ -8,7 +8,8 @@ namespace limber::calls {
 
 namespace {
 
-constexpr std::size_t kMostHeld = 10000;
+constexpr std::size_t kMostHeld = 10000;  // messages of one call
+constexpr std::size_t kMostHeldText = std::size_t{1} << 20u;
 
 // address against pattern, name by name; an empty name in the pattern (`//`) stands for any depth
 bool pieces_match(std::span<const std::string_view> pattern, std::span<const std::string_view> address, int& budget) {
@@ -93,8 +94,12 @@ std::int32_t message_send(void* c, std::int32_t way, double ip, std::int32_t por
   if (way == 1 && !context.handling_message) {
     return context.refuse("osc:reply answers the message that is being handled: call it inside an osc:on function");
   }
-  if (context.held.size() >= kMostHeld) {
-    return context.refuse(fmt::format("one call may send up to {} messages", kMostHeld));
+  std::size_t text = 0;
+  for (const Arg& arg : context.message.args) text += arg.text.size();
+  if (context.held.empty()) context.held_text = 0;
+  context.held_text += text;
+  if (context.held.size() >= kMostHeld || context.held_text > kMostHeldText) {
+    return context.refuse(fmt::format("one call may send up to {} messages and 1 MB of text", kMostHeld));
   }
   using Way = ScriptContext::Way;
   const Origin direct{Hand::osc, static_cast<std::uint32_t>(ip), static_cast<std::uint16_t>(port)};

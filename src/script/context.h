@@ -92,6 +92,7 @@ struct ScriptContext {
     Message message;
   };
   std::vector<Held> held;
+  std::size_t held_text = 0;  ///< Bytes of text in them.
   bool reset_wanted = false;
   ForceQueue forces;
   /// From here on everything that a script does is kept for the undo.

@@ -6,11 +6,11 @@
 
 #include <algorithm>
 #include <atomic>
+#include <csignal>
 #include <cstring>
 #include <utility>
 
 #include <fmt/format.h>
-#include <signal.h>
 #include <sys/time.h>
 
 #include <lua.hpp>

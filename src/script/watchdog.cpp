@@ -4,15 +4,12 @@
 #include <algorithm>
 #include <atomic>
 #include <chrono>
+#include <csignal>
 
+#include <dlfcn.h>
 #include <pthread.h>
-#include <signal.h>
 #include <sys/syscall.h>
 #include <unistd.h>
-
-// the C library's own: a sanitizer's wrapper would put a signal off until the next call that it knows, and compiled Lua
-// makes none
-extern "C" int __sigaction(int number, const struct sigaction* wanted, struct sigaction* before) noexcept;
 
 namespace limber {
 
@@ -56,7 +53,11 @@ void install_handler() {
   action.sa_handler = on_signal;
   action.sa_flags = SA_RESTART;
   sigemptyset(&action.sa_mask);
-  __sigaction(kSignal, &action, nullptr);
+  // the C library's own: a sanitizer's wrapper would put a signal off until the next call that it knows, and compiled
+  // Lua makes none
+  using Function = decltype(&sigaction);
+  const auto own = reinterpret_cast<Function>(dlsym(RTLD_NEXT, "__sigaction"));
+  (own == nullptr ? &sigaction : own)(kSignal, &action, nullptr);
 }
 
 struct ThisThread {

@@ -84,15 +84,14 @@ void Behavior::step_group(std::span<Behavior* const> members, double dt) {
 void Behavior::take_over(Behavior&) {}
 
 const std::string& Behavior::name() const { return store().name(id_); }
-World& Behavior::world() const { return body_->world(); }
-Store& Behavior::store() const { return body_->store(); }
+Store& Behavior::store() const { return world_->store(); }
 
 const double* Behavior::values(std::uint32_t parameter) const {
   return store().values(id_, type_->table->row(kCommonBehaviorRows + parameter));
 }
 
 bool Behavior::active() const { return store().values(id_, type_->table->row(0))[0] != 0; }
-bool Behavior::runs() const { return body_ != nullptr && active() && fault_.text.empty() && body_->enabled(); }
+bool Behavior::runs() const { return !removed() && active() && fault_.text.empty() && body_->enabled(); }
 double Behavior::microseconds() const { return 1e6 * (group_ == nullptr ? seconds_ : group_->seconds_a_member()); }
 void Behavior::read_time(double* out) const { out[0] = microseconds(); }
 
@@ -108,6 +107,7 @@ Result<void> Behavior::act_remove(std::span<const double>) {
 }
 
 void Behavior::fail(BehaviorFault fault) {
+  if (removed()) return;
   fault_ = std::move(fault);
   call_attention();
   world().behaviors().say_fault(*this);
@@ -143,6 +143,7 @@ bool Behavior::due(const Row& row) {
 
 void Behavior::attach(Body& body, NodeId id, std::shared_ptr<const BehaviorType> type,
                       std::shared_ptr<const BehaviorSetup> setup, BehaviorGroup* group) {
+  world_ = &body.world();
   body_ = &body;
   id_ = id;
   type_ = std::move(type);

@@ -62,12 +62,13 @@ class Behavior {
   /// have been taken already.
   virtual void take_over(Behavior& before);
 
-  // What it is; valid from start() on.
+  // What it is; valid from start() on. One that is removed while it steps has no body any more, and an empty name.
   NodeId id() const { return id_; }
   const std::string& name() const;
   Body& body() const { return *body_; }
-  World& world() const;
+  World& world() const { return *world_; }
   Store& store() const;
+  bool removed() const { return body_ == nullptr; }
   const BehaviorType& type() const { return *type_; }
   /// The group that it is a member of, or null.
   BehaviorGroup* group() const { return group_; }
@@ -135,6 +136,7 @@ class Behavior {
   Result<void> act_remove(std::span<const double> args);
   static void active_written(void* thing, const Row& row);
 
+  World* world_ = nullptr;
   Body* body_ = nullptr;  // null: removed
   BehaviorGroup* group_ = nullptr;
   NodeId id_;

@@ -108,9 +108,8 @@ TEST(RotationTarget, JointsMeanTheirMotors) {
     parts.push_back(&s.part(body, sphere_model(0.1), 1, {{static_cast<double>(parts.size()), 0, 0}, quat_identity()}));
     Joint& joint = **body.add_joint(name, *parts[parts.size() - 2], *parts.back(), JointType::revolute,
                                     parts.back()->pose().position, Vec3(0, 0, 1));
-    if (std::string_view(name) != "bare") {
-      ASSERT_TRUE(body.add_motor(joint).ok());
-    }
+    if (std::string_view(name) == "bare") continue;
+    ASSERT_TRUE(body.add_motor(joint).ok());
   }
   const auto names = [&](std::optional<std::vector<std::string>> joints,
                          std::optional<std::vector<std::string>> motors) {

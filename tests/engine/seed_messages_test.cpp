@@ -229,6 +229,76 @@ TEST(SeedMessages, WhatTookFramesApartIsRefusedWithTheReason) {
   }
 }
 
+// the parameters as the seed spells them, its own types and how many numbers each takes
+struct SeedParameter {
+  const char* type;
+  const char* name;
+  std::size_t numbers;
+};
+constexpr SeedParameter kParameters[] = {
+    {"ForceBehavior", "dir", 3},
+    {"ForceBehavior", "amp", 1},
+    {"ForceBehavior", "maxAmp", 1},
+    {"ForceBehavior", "appInterval", 1},
+    {"RandomForceBehavior", "minDir", 3},
+    {"RandomForceBehavior", "maxDir", 3},
+    {"RandomForceBehavior", "minAmp", 1},
+    {"RandomForceBehavior", "maxAmp", 1},
+    {"RandomForceBehavior", "randInterval", 1},
+    {"RandomForceBehavior", "appInterval", 1},
+    {"TorqueBehavior", "torque", 3},
+    {"TorqueBehavior", "scale", 1},
+    {"RandomTorqueBehavior", "minTorque", 3},
+    {"RandomTorqueBehavior", "maxTorque", 3},
+    {"RandomTorqueBehavior", "scale", 1},
+    {"RotationTargetBehavior", "target", 3},
+    {"RotationTargetBehavior", "speed", 1},
+    {"RandomRotationTargetBehavior", "minTarget", 3},
+    {"RandomRotationTargetBehavior", "maxTarget", 3},
+    {"SpeedBehavior", "speed", 1},
+    {"SpeedBehavior", "amount", 1},
+    {"TargetAttractionBehavior", "targetPos", 3},
+    {"TargetAttractionBehavior", "minDist", 1},
+    {"TargetAttractionBehavior", "maxDist", 1},
+    {"VolumeBehavior", "maxDist", 1},
+    {"CohesionBehavior", "minDist", 1},
+    {"CohesionBehavior", "maxDist", 1},
+    {"CohesionBehavior", "amount", 1},
+    {"AlignmentBehavior", "linearAmount", 1},
+    {"AlignmentBehavior", "angularAmount", 1},
+};
+
+TEST(SeedMessages, BehavioursParametersInBothForms) {
+  for (const SeedParameter& p : kParameters) {
+    Rig rig;
+    BehaviorList& list = rig.world.behaviors();
+    const bool grouped = list.types().find(p.type)->is_group;
+    if (grouped) {
+      ASSERT_TRUE(list.add_group(p.type, "it").ok());
+    } else {
+      ASSERT_TRUE(list.add(*rig.world.find_body("arm"), p.type, "it").ok());
+      ASSERT_TRUE(list.add(*rig.world.find_body("1"), p.type, "it").ok());
+    }
+    const auto value = [&](const char* body) {
+      const Behavior& behavior = *rig.world.find_body(body)->find_behavior("it");
+      std::vector<double> out(3);
+      rig.store.get(behavior.id(), *behavior.type().table->find(p.name), out.data());
+      return out[p.numbers - 1];
+    };
+    const auto send = [&](std::vector<Arg> names, double last) {
+      names.push_back(arg(p.name));
+      for (std::size_t i = 1; i <= p.numbers; i++) names.push_back(arg(i == p.numbers ? last : 0.25));
+      return rig.dispatch.execute({"/physics/behavior/parameter", names});
+    };
+    EXPECT_EQ(send({arg("it")}, 0.5).kind, Kind::applied) << p.type << " " << p.name;
+    EXPECT_EQ(value("arm"), 0.5) << p.type << " " << p.name;
+    EXPECT_EQ(value("1"), 0.5) << p.type << " " << p.name;
+    EXPECT_EQ(send({arg("arm"), arg("it")}, 0.75).kind, Kind::applied) << p.type << " " << p.name;
+    EXPECT_EQ(value("arm"), 0.75) << p.type << " " << p.name;
+    EXPECT_EQ(value("1"), 0.5) << p.type << " " << p.name;
+  }
+}
+
 TEST(SeedMessages, EveryWritableRowHasItsMessage) {
   // derived: a row added to a table answers at once; nothing else is to be written
   Rig rig;

@@ -133,6 +133,49 @@ TEST(Guard, AGoodCallStays) {
   }
 }
 
+TEST(Guard, ARunThatFailsNamesItsPlaceAndHarmsNobody) {
+  const struct {
+    const char* text;
+    const char* fault;  // after the file's name; of a loop's lines the last one
+  } runs[] = {
+      {"local t = {}\nfor i = 1, math.huge do t[i] = i end", "2: stopped: scripts may hold"},
+      {"local s = 'x'\nwhile true do s = s .. s end", "2: stopped: scripts may hold"},
+      {"for i = 1, 3 do sim:add_body('b' .. i) end\nerror('on purpose')", "2: on purpose"},
+      {"pcall(function()\nwhile true do end end)", "2: stopped after"},
+      {"local co = coroutine.wrap(function()\nwhile true do end end) co()", "2: stopped after"},
+      {"setmetatable({}, { __index = function()\nwhile true do end end }).x()", "2: stopped after"},
+      {"local x = = 1", "1: unexpected symbol near '='"},
+      {"goto nowhere", "1: undefined label 'nowhere'"},
+      {"\27LJ\2\2", ""},
+      {"return sim.nothing", "1: sim has no property 'nothing'"},
+      {"sim:reset()", "1: sim:reset acts on the running scene"},
+  };
+  SceneOptions options = quick();
+  options.limits.memory = std::size_t{16} << 20u;
+  options.limits.run_ms = 200 * kBudgetScale;
+  for (const auto& run : runs) {
+    Stage stage(options);
+    const std::string fault = first_line(stage.run(run.text));
+    EXPECT_EQ(fault.find(std::string("scripts/scene.lua:") + run.fault), run.fault[0] == 0 ? fault.npos : 0u)
+        << run.text << "\n"
+        << fault;
+    EXPECT_NE(fault, "") << run.text;
+    stage.tick(2);
+  }
+  EXPECT_EQ(value_of("1 + 1"), "2");
+}
+
+TEST(Guard, ASceneHasABoundedNumberOfThings) {
+  SceneOptions options = quick();
+  options.limits.run_ms = 5000 * kBudgetScale;
+  options.limits.things = 400;
+  Stage stage(options, true);
+  EXPECT_EQ(first_line(stage.run("local n = 0 while true do n = n + 1 sim:add_body('body ' .. n) end")),
+            "scripts/scene.lua:1: a scene may have 400 things (bodies, their parts, joints and motors, shapes)");
+  EXPECT_GT(stage.world.bodies().size(), 90u);  // four nodes a body
+  EXPECT_LT(stage.world.bodies().size(), 101u);
+}
+
 TEST(Guard, CallsFromCpp) {
   Stage ground;
   ScriptContext context(ground.world, ground.host, quick());
