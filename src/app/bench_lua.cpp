@@ -115,9 +115,10 @@ constexpr Twin kTwins[] = {
 std::string twin_scene(const Twin& twin, int parts) {
   const auto line = [&](const char* body, const std::string& type) {
     if (twin.group) {
-      return fmt::format("cloud('{0}', {1}, false, vec3({3}, 0, 0)) sim:add_group_behavior('{2}', '{0}', {{ bodies = "
-                         "'{0}*', {4} }})\n",
-                         body, parts, type, body[0] == 'c' ? 0 : 1000, twin.opts);
+      return fmt::format(
+          "cloud('{0}', {1}, false, vec3({3}, 0, 0)) sim:add_group_behavior('{2}', '{0}', {{ bodies = "
+          "'{0}*', {4} }})\n",
+          body, parts, type, body[0] == 'c' ? 0 : 1000, twin.opts);
     }
     return fmt::format("{5}('{0}', {1}, {6}vec3({3}, 0, 0)):add_behavior('{2}', 'it', {{ {4} }})\n", body, parts, type,
                        body[0] == 'c' ? 0 : 1000, twin.opts, twin.motors ? "rack" : "cloud",
@@ -130,8 +131,8 @@ std::string twin_scene(const Twin& twin, int parts) {
 // microseconds of the last tick
 double time_of(const World& world, const Twin& twin, const std::string& body) {
   const Store& store = world.store();
-  const NodeId id = twin.group ? world.behaviors().find_group(body)->id()
-                               : world.find_body(body)->find_behavior("it")->id();
+  const NodeId id =
+      twin.group ? world.behaviors().find_group(body)->id() : world.find_body(body)->find_behavior("it")->id();
   double time = 0;
   store.get(id, store.table(id).at("time"), &time);
   return time;
@@ -171,10 +172,11 @@ nlohmann::ordered_json bench_lua_many(const BenchOptions& options) {
   const std::string small =
       "return behavior { params = { { 'lift', 0.01, unit = 'N' } },\n"
       "step = function(self) self.parts[1]:apply_force(vec3(0, 0, self.lift)) end }\n";
-  const std::string scene = std::string(kClouds) +
-                            fmt::format("cloud('b', {}, false, vec3())\n"
-                                        "for _, body in ipairs(sim.bodies) do body:add_behavior('small', 'it') end\n",
-                                        kInstances);
+  const std::string scene =
+      std::string(kClouds) + fmt::format(
+                                 "cloud('b', {}, false, vec3())\n"
+                                 "for _, body in ipairs(sim.bodies) do body:add_behavior('small', 'it') end\n",
+                                 kInstances);
   BenchShow show(scene, small);
   if (!show.started()) return {{"error", show.started().error()}};
   Samples behaviors;

@@ -197,7 +197,8 @@ bool watch(const Show& show, Engine& engine, const EngineLink& link, const sigse
     for (int i = 0; i < 3 && !show.over(); i++) {
       if (listen(signals) == Heard::end) break;
     }
-    if (!show.over()) leave("ended in the middle of a tick that takes seconds: fewer substeps or solver_iterations would help");
+    if (!show.over())
+      leave("ended in the middle of a tick that takes seconds: fewer substeps or solver_iterations would help");
     return true;
   }
   return false;

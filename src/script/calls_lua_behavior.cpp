@@ -26,7 +26,8 @@ std::int32_t behavior_known(void* c, const char* name, std::int32_t length) {
   const std::string_view type = text_of(name, length);
   const auto known = context.world->behaviors().types().find(type);
   if (known == nullptr || !known->is_built_in) return context.behaviors->knows(type) ? 1 : 0;
-  const std::string file = context.answer.top_level != 0 ? context.sources->find_behavior(context.files, type) : std::string();
+  const std::string file =
+      context.answer.top_level != 0 ? context.sources->find_behavior(context.files, type) : std::string();
   if (file.empty()) return 1;
   return context.refuse(fmt::format("{}: '{}' is a built-in behavior type; call the file something else",
                                     context.files.shown(file), known->name));
@@ -58,8 +59,7 @@ std::int32_t behavior_declare(void* c, std::int32_t file, const char* doc, std::
 
 void in_behavior(void* c, std::int32_t on) { context_of(c).answer.in_behavior = on; }
 
-std::int32_t behavior_item(void* c, std::int32_t slot, std::int32_t generation, std::int32_t kind,
-                           std::int32_t index) {
+std::int32_t behavior_item(void* c, std::int32_t slot, std::int32_t generation, std::int32_t kind, std::int32_t index) {
   ScriptContext& context = context_of(c);
   const Behavior* behavior = behavior_of(context, id_of(slot, generation));
   if (behavior == nullptr) return kGone;

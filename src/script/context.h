@@ -78,9 +78,9 @@ struct ScriptContext {
   bool handling_message = false;
   std::int32_t handlers = 0;  ///< Registered by osc:on.
   std::unique_ptr<ParamsNode> params;
-  std::uint64_t rerun_rows = 0;           ///< Parameters with `rerun`, a bit a row.
-  std::optional<double> timers_at;        ///< Time at which timers were looked at last.
-  std::span<std::int32_t* const> things;  ///< Slot and generation of every handle, while these are given others.
+  std::uint64_t rerun_rows = 0;                ///< Parameters with `rerun`, a bit a row.
+  std::optional<double> timers_at;             ///< Time at which timers were looked at last.
+  std::span<std::int32_t* const> things;       ///< Slot and generation of every handle, while these are given others.
   std::shared_ptr<BehaviorScripts> behaviors;  ///< Shared with the behaviours that live in the world.
 
   // guarded calls: what one asks of the outside waits until it has ended well

@@ -45,8 +45,9 @@ const Table& World::table() {
           effect<&World::effect_solver>(integer("solver_iterations", 50, 1, 10000,
                                                 "Rounds of the contact and joint solver in each internal step.")),
           choice("solver", {"iterative"}, 0, "How joints and contacts are solved."),
-          live(state(integer("seed", 1, 0, 9007199254740992,
-                             "What every random draw derives from: a behaviour's at once, a scene's from the next start."))),
+          live(state(
+              integer("seed", 1, 0, 9007199254740992,
+                      "What every random draw derives from: a behaviour's at once, a scene's from the next start."))),
           live(state(boolean("paused", false, "Time stands still; commands and OSC are still answered."))),
           live(state(number("speed", "× real time", 1, 0.01, 100, "How fast simulated time runs when it is paced."))),
           live(readout(number("time", "s", 0, 0, kUnbounded, "Simulated time."))),

@@ -110,8 +110,9 @@ TEST_F(Console, ErrorsStandAtTheirLine) {
             "error: console:3: there is no global 'foo'\n  3 | foo.bar = a\n"
             "stack traceback:\n  console:3: in the main chunk");
   EXPECT_EQ(say("x = = 2"), "error: console:1: unexpected symbol near '='\n  1 | x = = 2");
-  EXPECT_EQ(say("error({})"), "error: console:1: an error that is no text but a table\n  1 | error({})\n"
-                              "stack traceback:\n  console:1: in the main chunk");
+  EXPECT_EQ(say("error({})"),
+            "error: console:1: an error that is no text but a table\n  1 | error({})\n"
+            "stack traceback:\n  console:1: in the main chunk");
   EXPECT_EQ(say("function f() nothing() end"), "done");
   EXPECT_TRUE(say("f()").ends_with("  console:1: in function 'f'\n  console:1: in the main chunk")) << say("f()");
   EXPECT_TRUE(stage.host.faults.empty()) << "what a person mistypes is no fault of the show";

@@ -49,8 +49,8 @@ sim:after(0.05, function() ball:add_part("more", "ball") end)
 
 TEST(LuaBehavior, MovesTheBodyInTheTickInWhichItActs) {
   BehaviorStage stage;
-  ASSERT_EQ(stage.play_one(stepping("for _, part in ipairs(self.parts) do part:apply_force(self.way * self.speed) end"), 1,
-                           "{ speed = 3, way = vec3(0, 2, 0) }"),
+  ASSERT_EQ(stage.play_one(stepping("for _, part in ipairs(self.parts) do part:apply_force(self.way * self.speed) end"),
+                           1, "{ speed = 3, way = vec3(0, 2, 0) }"),
             "");
   // F = 6 N on 2 kg for 1/60 s
   EXPECT_NEAR(stage.world.find_body("ball")->root()->linear_velocity().y, 3.0 / 60, 1e-6);
@@ -94,12 +94,11 @@ TEST(LuaBehavior, WrongMembersAreExplained) {
             at + "due is a method of a behavior: write it with a colon, behavior:due(…), not with a dot");
   EXPECT_EQ(step_says("self:due('sped')"),
             at + "behavior 'ball/it': due takes the name of a parameter in quotes, not 'sped'; did you mean 'speed'?");
-  EXPECT_EQ(step_says("self:due(500)"), at +
-                "behavior 'ball/it': due takes the name of a parameter in quotes, not 500; there are: speed");
+  EXPECT_EQ(step_says("self:due(500)"),
+            at + "behavior 'ball/it': due takes the name of a parameter in quotes, not 500; there are: speed");
   EXPECT_EQ(step_says("self:due('way')"),
             at + "behavior 'ball/it': 'way' is no number of milliseconds; due takes the name of a number");
-  EXPECT_EQ(step_says("self:remove()").substr(0, 72),
-            at + "behavior 'ball/it' has no property 'remove'; t");
+  EXPECT_EQ(step_says("self:remove()").substr(0, 72), at + "behavior 'ball/it' has no property 'remove'; t");
 }
 
 TEST(LuaBehavior, IntervalsAreThoseOfTheBuiltInOnes) {
@@ -120,8 +119,7 @@ TEST(LuaBehavior, DrawsAsItsSeedAndPathSay) {
   const double x = expected.uniform();
   const double y = expected.uniform();
   const double z = expected.uniform();
-  EXPECT_EQ(stage.host.printed.back(),
-            fmt::format("{:.14g}\tvec3({:.14g}, {:.14g}, {:.14g})", u, x, 2 * y, 3 * z));
+  EXPECT_EQ(stage.host.printed.back(), fmt::format("{:.14g}\tvec3({:.14g}, {:.14g}, {:.14g})", u, x, 2 * y, 3 * z));
 }
 
 TEST(LuaBehavior, AFilesOwnDrawsDisturbNobody) {
@@ -160,9 +158,10 @@ TEST(LuaBehavior, MakesNothingAndRegistersNothing) {
   EXPECT_EQ(step_says("self.body:add_behavior('force', 'x')"), refused("body:add_behavior"));
   EXPECT_EQ(step_says("osc:on('/x', print)"), refused("osc:on"));
   EXPECT_EQ(step_says("sim:after(1, print)"), refused("sim:after"));
-  EXPECT_EQ(load_error("sim:add_body('x')\nreturn behavior { step = function() end }"),
-            "behaviors_lua/test.lua:1: sim:add_body makes or registers something: that is the scene's; a behavior moves "
-            "what is there");
+  EXPECT_EQ(
+      load_error("sim:add_body('x')\nreturn behavior { step = function() end }"),
+      "behaviors_lua/test.lua:1: sim:add_body makes or registers something: that is the scene's; a behavior moves "
+      "what is there");
   EXPECT_EQ(load_error("sim:body('ball').root:apply_force(vec3())"),
             "behaviors_lua/test.lua:1: part 'ball/ball':apply_force acts on the running scene; a behavior acts in its "
             "start and step");
@@ -180,7 +179,8 @@ TEST(LuaBehavior, HasAnEnvironmentOfItsOwn) {
             "scripts/scene.lua:1: there is no global 'behavior'; a behavior is a file of its own in behaviors_lua/");
   BehaviorStage stage;
   stage.write("behaviors_lua/a.lua", "math.sin = nil x = 1 return behavior { step = function() print(x) end }");
-  stage.write("behaviors_lua/b.lua", "return behavior { step = function() print(math.sin(0), pcall(function() return x end)) end }");
+  stage.write("behaviors_lua/b.lua",
+              "return behavior { step = function() print(math.sin(0), pcall(function() return x end)) end }");
   ASSERT_EQ(stage.play(std::string(kBall) + "ball:add_behavior('a', 'a') ball:add_behavior('b', 'b')", 1), "");
   EXPECT_EQ(stage.host.printed,
             (std::vector<std::string>{"1", "0\tfalse\tbehaviors_lua/b.lua:1: there is no global 'x'"}));
@@ -191,7 +191,10 @@ TEST(LuaBehavior, InstancesShareNoState) {
   stage.write("behaviors_lua/test.lua",
               "return behavior { step = function(self) self.state[self.body.name] = true\n"
               "local n = 0 for _ in pairs(self.state) do n = n + 1 end print(n) end }");
-  ASSERT_EQ(stage.play(std::string(kBall) + "ball:add_behavior('test', 'it') ball:copy('twin', { position = vec3(5, 0, 0) })", 2), "");
+  ASSERT_EQ(
+      stage.play(std::string(kBall) + "ball:add_behavior('test', 'it') ball:copy('twin', { position = vec3(5, 0, 0) })",
+                 2),
+      "");
   EXPECT_EQ(stage.host.printed, (std::vector<std::string>{"1", "1", "1", "1"}));
 }
 
@@ -199,11 +202,12 @@ TEST(LuaBehavior, AFaultSuspendsItAloneUntilItIsTriedAgain) {
   BehaviorStage stage;
   std::vector<BehaviorFault> said;
   stage.world.behaviors().on_fault([&](const Behavior& b) { said.push_back(b.fault()); });
-  stage.write("behaviors_lua/test.lua", "return behavior { params = { { 'bad', true } },\n"
-                                        "start = function(self) print('start') end,\n"
-                                        "step = function(self) if self.bad then\n"
-                                        "  local x = nil + 1 end\n"
-                                        "  print('ok') end }");
+  stage.write("behaviors_lua/test.lua",
+              "return behavior { params = { { 'bad', true } },\n"
+              "start = function(self) print('start') end,\n"
+              "step = function(self) if self.bad then\n"
+              "  local x = nil + 1 end\n"
+              "  print('ok') end }");
   stage.write("behaviors_lua/other.lua", "return behavior { step = function() print('tick') end }");
   ASSERT_EQ(stage.play(std::string(kBall) + "ball:add_behavior('test', 'it') ball:add_behavior('other', 'o')", 3), "");
   ASSERT_EQ(said.size(), 1u) << "said once";
