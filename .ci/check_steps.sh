@@ -125,7 +125,7 @@ fuzz_target() {
 fuzz_names() { (cd tests/fuzz 2>/dev/null && ls ./*_fuzz.cpp 2>/dev/null) | sed 's|^\./||; s|\.cpp$||'; }
 
 # how many inputs a target takes in about twenty seconds
-fuzz_runs() { case $1 in osc*) echo 250000 ;; *) echo 50000 ;; esac; }
+fuzz_runs() { case $1 in osc*) echo 250000 ;; script*) echo 1000 ;; *) echo 20000 ;; esac; }
 
 # as alike as it can be: one seed, a number of runs, nothing from the runs before; the time is a cap for a slow machine
 # alone. (In a live world Lua's collector stops by the clock, so the OSC target's runs differ a little.)
