@@ -13,6 +13,7 @@
 
 #include "base/log.h"
 #include "script/context.h"
+#include "script/scene.h"
 #include "script/vm.h"
 
 namespace limber {
@@ -255,7 +256,8 @@ void play(std::span<const std::uint8_t> bytes) {
       "for i, name in ipairs { 'one', 'two' } do "
       "sim:add_body(name):add_part('p', ball, { position = { i, 0, 1 }, report_contacts = true }) end ";
   context.answer.top_level = 1;
-  (void)vm.run(before + writer.scene(all_fail), "fuzz.lua");
+  ScriptPlace fault;
+  (void)vm.run(before + writer.scene(all_fail), "fuzz.lua", fault);
   context.answer.top_level = 0;
   world.settle();
   world.step();
