@@ -81,8 +81,9 @@ Terminal::Terminal(ConsoleLink link) : session_(std::move(link), take_interrupt)
   el_set(edit_, EL_SIGNAL, 0);
   el_set(edit_, EL_HIST, history, history_);
   el_set(edit_, EL_GETCFN, &Terminal::read_key);
-  el_set(edit_, EL_ADDFN, "limber-cancel", "Gives the line up", &Terminal::on_cancel);
-  el_set(edit_, EL_ADDFN, "limber-complete", "Completes a name", &Terminal::on_tab);
+  // in wide characters, which libedit keeps as they are: of others it makes copies that it never frees
+  el_wset(edit_, EL_ADDFN, L"limber-cancel", L"Gives the line up", &Terminal::on_cancel);
+  el_wset(edit_, EL_ADDFN, L"limber-complete", L"Completes a name", &Terminal::on_tab);
   el_set(edit_, EL_BIND, "^C", "limber-cancel", nullptr);
   el_set(edit_, EL_BIND, "^I", "limber-complete", nullptr);
   el_set(edit_, EL_BIND, "^R", "em-inc-search-prev", nullptr);

@@ -50,14 +50,23 @@ class Typist {
       }
     }
   }
+  /// Reads until the prompt has come and the editor has the terminal, which it takes right after: what is typed before is
+  /// echoed twice, and Ctrl+C would drop it. Gives what came.
+  std::string prompted(const std::string& prompt = "limber> ") {
+    std::string came = until(prompt);
+    termios mode{};
+    for (int left = kPatienceMs; left > 0 && tcgetattr(fd_, &mode) == 0 && (mode.c_lflag & ICANON) != 0; left--) {
+      poll(nullptr, 0, 1);
+    }
+    return came;
+  }
   /// Types a line and gives what is between it and the next prompt.
   std::string line(const std::string& text, const std::string& prompt = "limber> ") {
     type(text + "\n");
     until("\r\n");
-    std::string came = until(prompt);
+    std::string came = prompted(prompt);
     came.resize(came.size() - prompt.size());
-    // what is typed before the editor has the terminal is echoed twice
-    return came.starts_with(text + "\r\n") ? came.substr(text.size() + 2) : came;
+    return came;
   }
   int finish() {
     while (read_some()) {
@@ -95,7 +104,7 @@ TEST(Terminal, EvaluatesAndKeepsAHistory) {
   Playing show(kScene);
   {
     Typist typist(show);
-    EXPECT_NE(typist.until("limber> ").find("plays " + show.file()), std::string::npos);
+    EXPECT_NE(typist.prompted().find("plays " + show.file()), std::string::npos);
     EXPECT_EQ(typist.line("apple + 1"), "4\r\n");
     EXPECT_EQ(typist.line("apple = 5"), "");
     EXPECT_TRUE(typist.line("aple").starts_with("console:1: there is no global 'aple'; did you mean 'apple'?\r\n"));
@@ -103,43 +112,43 @@ TEST(Terminal, EvaluatesAndKeepsAHistory) {
     typist.type("\x1b[A\x1b[A");
     typist.until(" = 5");
     typist.type("0\n");
-    typist.until("limber> ");
+    typist.prompted();
     EXPECT_EQ(typist.line("apple"), "50\r\n");
     typist.type("\x04");
     EXPECT_EQ(typist.finish(), 0);
   }
   Typist again(show);
-  again.until("limber> ");
+  again.prompted();
   again.type("\x1b[A");
   again.until("apple");
   again.type(" + 1\n");
-  EXPECT_NE(again.until("limber> ").find("\r\n51\r\n"), std::string::npos);
+  EXPECT_NE(again.prompted().find("\r\n51\r\n"), std::string::npos);
 }
 
 TEST(Terminal, SeveralLinesMakeAChunkAndCtrlCGivesItUp) {
   Playing show(kScene);
   Typist typist(show);
-  typist.until("limber> ");
+  typist.prompted();
   EXPECT_EQ(typist.line("for i = 1, 2 do", ".. "), "     ");
   EXPECT_EQ(typist.line("print(i)", ".. "), "     ");
   EXPECT_EQ(typist.line("end"), "1\r\n2\r\n");
   EXPECT_EQ(typist.line("if apple then", ".. "), "     ");
   typist.type("\x03");
   typist.until("^C\r\n");
-  typist.until("limber> ");
+  typist.prompted();
   EXPECT_EQ(typist.line("apple"), "3\r\n");
   // and a line that is only begun
   typist.type("apple = 99");
   typist.until("apple = 99");
   typist.type("\x03");
-  typist.until("limber> ");
+  typist.prompted();
   EXPECT_EQ(typist.line("apple"), "3\r\n");
 }
 
 TEST(Terminal, TabCompletes) {
   Playing show(kScene);
   Typist typist(show);
-  typist.until("limber> ");
+  typist.prompted();
   typist.type("sim:body(\"a\t");
   typist.until("rm");  // the editor draws what is new
   typist.type("\"):part(1).restit\t");
@@ -147,7 +156,7 @@ TEST(Terminal, TabCompletes) {
   EXPECT_EQ(typist.line(""), "0\r\n");
   // several: as far as they go, then all of them
   typist.type("sim.time\t");
-  const std::string offered = typist.until("limber> ");
+  const std::string offered = typist.prompted();
   EXPECT_NE(offered.find("time      timestep"), std::string::npos) << offered;
   typist.until("sim.time");
   typist.type("s\t");
@@ -158,7 +167,7 @@ TEST(Terminal, TabCompletes) {
 TEST(Terminal, WhatTheShowSaysComesAboveTheLineThatIsTyped) {
   Playing show(kScene);
   Typist typist(show);
-  typist.until("limber> ");
+  typist.prompted();
   EXPECT_EQ(typist.line("later('hello')"), "");
   typist.type("app");
   typist.until("\r\x1b[Khello\r\n");
@@ -169,7 +178,7 @@ TEST(Terminal, WhatTheShowSaysComesAboveTheLineThatIsTyped) {
 TEST(Terminal, TheEndOfTheShowIsSaid) {
   Playing show(kScene);
   Typist typist(show);
-  typist.until("limber> ");
+  typist.prompted();
   show.running().signal(SIGINT);
   typist.until("limber has ended");
   EXPECT_EQ(typist.finish(), 0);
@@ -178,18 +187,18 @@ TEST(Terminal, TheEndOfTheShowIsSaid) {
 TEST(Terminal, AnAnswerThatNeverComesCanBeGivenUp) {
   Playing show(kScene);
   Typist typist(show);
-  typist.until("limber> ");
+  typist.prompted();
   // a program that does not go on
   show.running().signal(SIGSTOP);
   typist.type("apple\n");
   typist.until("\r\n");
   typist.type("\x03");
   typist.until("its answer is not awaited");
-  typist.until("limber> ");
+  typist.prompted();
   // it comes late, as anything that the program says
   show.running().signal(SIGCONT);
   typist.until("3\r\n");
-  typist.until("limber> ");
+  typist.prompted();
   EXPECT_EQ(typist.line("apple + 1"), "4\r\n");
 }
 

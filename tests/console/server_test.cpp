@@ -23,7 +23,7 @@ using Kind = ConsoleLine::Kind;
 constexpr int kPatience = 60000;  // looks; only a failing test has so much
 
 constexpr const char* kScene = R"(
-ball = sim:add_body("ball"):add_part("ball", sim:add_sphere_shape("ball", 1))
+ball = sim:add_body("ball"):add_part("ball", sim:add_sphere_shape("ball", 1), { mass = 0 })
 state.n = 0
 sim:on_step(function() state.n = state.n + 1 end)
 )";
