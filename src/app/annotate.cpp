@@ -8,6 +8,7 @@
 
 #include <fmt/format.h>
 
+#include "app/exit_code.h"
 #include "base/text.h"
 #include "engine/engine.h"
 #include "script/annotate.h"
@@ -45,15 +46,14 @@ int annotate_command(const std::string& file) {
   const std::string text = annotations_text();
   if (file.empty()) {
     fmt::print("{}", text);
-    return 0;
+    return kFine;
   }
   std::error_code ignored;
   const std::filesystem::path folder = std::filesystem::path(file).parent_path();
   if (!folder.empty()) std::filesystem::create_directories(folder, ignored);
   std::ofstream(file, std::ios::binary) << text;
-  if (content_of(file) == text) return 0;
-  fmt::print(stderr, "limber: {} can't be written; look at the folder's permissions\n", printable(file));
-  return 3;
+  if (content_of(file) == text) return kFine;
+  return fail(kMachine, fmt::format("{} can't be written; look at the folder's permissions", file));
 }
 
 }  // namespace limber

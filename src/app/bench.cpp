@@ -14,6 +14,7 @@
 #include "app/bench_osc.h"
 #include "app/bench_reload.h"
 #include "app/bench_spawn.h"
+#include "app/exit_code.h"
 #include "base/build_info.h"
 #include "base/text.h"
 
@@ -136,8 +137,7 @@ int bench_command(const BenchOptions& options) {
     if (chosen.back() != nullptr) continue;
     std::vector<std::string_view> names;
     for (const BenchScene& scene : bench_scenes()) names.push_back(scene.name);
-    fmt::print(stderr, "limber: there is no bench scene '{}'{}\n", printable(name), name_hint(name, names));
-    return 2;
+    return fail(kUsage, fmt::format("there is no bench scene '{}'{}", name, name_hint(name, names)));
   }
   if (chosen.empty()) {
     for (const BenchScene& scene : bench_scenes()) chosen.push_back(&scene);
@@ -161,7 +161,7 @@ int bench_command(const BenchOptions& options) {
     }
   }
   if (options.json) fmt::print("{}\n", all.dump(2));
-  return 0;
+  return kFine;
 }
 
 }  // namespace limber

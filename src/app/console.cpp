@@ -11,6 +11,7 @@
 
 #include "app/console_session.h"
 #include "app/console_terminal.h"
+#include "app/exit_code.h"
 #include "base/text.h"
 
 namespace limber {
@@ -19,22 +20,14 @@ namespace {
 
 using Answer = ConsoleSession::Answer;
 
-constexpr int kFine = 0;
-constexpr int kInput = 1;
-
-int fail(std::string_view text) {
-  fmt::print(stderr, "limber: {}\n", text);
-  return kInput;
-}
-
 int evaluate_once(ConsoleSession& session, const std::string& text) {
   switch (session.evaluate(text)) {
     case Answer::done:
       return kFine;
     case Answer::incomplete:
-      return fail("console: the text is not complete: something that it opens is never closed");
+      return fail(kInput, "console: the text is not complete: something that it opens is never closed");
     case Answer::ended:
-      return fail("console: limber ended before it answered");
+      return fail(kInput, "console: limber ended before it answered");
     default:
       return kInput;
   }
@@ -89,7 +82,7 @@ int evaluate_lines(ConsoleSession& session) {
     chunk += line;
     if (chunk.empty()) continue;
     const Answer answer = session.evaluate(chunk);
-    if (answer == Answer::ended) return fail("console: limber ended before it answered");
+    if (answer == Answer::ended) return fail(kInput, "console: limber ended before it answered");
     if (answer == Answer::incomplete) {
       chunk += '\n';
       continue;
@@ -97,7 +90,8 @@ int evaluate_lines(ConsoleSession& session) {
     failed = failed || answer != Answer::done;
     chunk.clear();
   }
-  if (!chunk.empty()) return fail("console: the input ends in the middle: something that it opens is never closed");
+  if (!chunk.empty())
+    return fail(kInput, "console: the input ends in the middle: something that it opens is never closed");
   return failed ? kInput : kFine;
 }
 
@@ -106,7 +100,7 @@ int evaluate_lines(ConsoleSession& session) {
 int console_command(const ConsoleCommand& command) {
   ConsoleLine hello;
   Result<ConsoleLink> link = choose_program(command.pid, hello);
-  if (!link) return fail(fmt::format("console: {}", printable(link.error())));
+  if (!link) return fail(kInput, "console: " + link.error());
   const bool typed = isatty(STDIN_FILENO) != 0 && isatty(STDOUT_FILENO) != 0;
   if (!command.expression && typed) return console_terminal(std::move(*link), hello);
   ConsoleSession session(std::move(*link));

@@ -17,6 +17,7 @@
 
 #include "app/console_history.h"
 #include "app/console_session.h"
+#include "app/exit_code.h"
 
 namespace limber {
 
@@ -227,7 +228,7 @@ int Terminal::run() {
     if (answer == ConsoleSession::Answer::left) fmt::print(" (it may still run; its answer is not awaited)\n");
   }
   fmt::print("{}\n", session_.ended() ? "\nlimber has ended" : "");
-  return 0;
+  return kFine;
 }
 
 }  // namespace

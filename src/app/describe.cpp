@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "app/exit_code.h"
 #include "app/paths.h"
 #include "base/text.h"
 #include "engine/engine.h"
@@ -125,12 +126,9 @@ int describe_command(const std::string& scene, bool json) {
   } else {
     out = as_text(each);
   }
-  if (!done) {
-    fmt::print(stderr, "limber: {}\n", printable(done.error()));
-    return 1;
-  }
+  if (!done) return fail(kInput, done.error());
   fmt::print("{}", out);
-  return 0;
+  return kFine;
 }
 
 }  // namespace limber

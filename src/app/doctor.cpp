@@ -10,6 +10,7 @@
 #include <fmt/format.h>
 #include <sys/utsname.h>
 
+#include "app/exit_code.h"
 #include "app/paths.h"
 #include "base/build_info.h"
 #include "engine/link.h"
@@ -84,7 +85,7 @@ int doctor_command() {
   }
   const bool display = std::getenv("DISPLAY") != nullptr || std::getenv("WAYLAND_DISPLAY") != nullptr;
   finding("ok", "display", display ? "there is one; this version plays headless" : "none; Limber plays headless");
-  return data.empty() || !ports ? 3 : 0;
+  return data.empty() || !ports ? kMachine : kFine;
 }
 
 }  // namespace limber

@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "app/exit_code.h"
 #include "base/text.h"
 #include "model/urdf_import.h"
 
@@ -159,11 +160,11 @@ int inspect_command(const std::string& path, bool json, const std::vector<std::s
   const Result<std::shared_ptr<const BodyModel>> model = import_urdf(path, options);
   if (!model) {
     fmt::print(stderr, "{}\n", model.error());
-    return 1;
+    return kInput;
   }
   const std::string text = json ? inspect_json(**model) : inspect_table(**model);
   std::fwrite(text.data(), 1, text.size(), stdout);
-  return 0;
+  return kFine;
 }
 
 }  // namespace limber

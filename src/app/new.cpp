@@ -14,6 +14,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "app/exit_code.h"
 #include "app/paths.h"
 #include "base/build_info.h"
 #include "base/check.h"
@@ -31,16 +32,9 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr int kFine = 0;
-constexpr int kInput = 1;
-constexpr int kUsage = 2;
-constexpr int kMachine = 3;
 constexpr std::size_t kMostName = 64;
 
-int fail(int code, std::string_view text) {
-  fmt::print(stderr, "limber: new: {}\n", printable(text));
-  return code;
-}
+int fail_new(int code, const std::string& text) { return fail(code, "new: " + text); }
 
 // small letters, digits and _, so that it can be a file, an address and a word in Lua
 bool good_name(std::string_view name) {
@@ -97,10 +91,10 @@ int write_new(const fs::path& path, std::string_view text) {
 int write_and_say(const fs::path& path, std::string_view text) {
   const int fault = write_new(path, text);
   if (fault == EEXIST)
-    return fail(kInput, fmt::format("{} is there already and stays as it is; choose another name", path.string()));
+    return fail_new(kInput, fmt::format("{} is there already and stays as it is; choose another name", path.string()));
   if (fault != 0) {
-    return fail(kMachine, fmt::format("{} can't be written: {}; look at the folder's permissions", path.string(),
-                                      std::generic_category().message(fault)));
+    return fail_new(kMachine, fmt::format("{} can't be written: {}; look at the folder's permissions", path.string(),
+                                          std::generic_category().message(fault)));
   }
   fmt::print("{}\n", printable(path.string()));
   return kFine;
@@ -110,7 +104,7 @@ int new_show(const std::string& folder) {
   std::error_code fault;
   const fs::path root(folder);
   if (fs::exists(root, fault) && !(fs::is_directory(root, fault) && fs::is_empty(root, fault)))
-    return fail(kInput, fmt::format("{} is there already; name a folder that is new or empty", folder));
+    return fail_new(kInput, fmt::format("{} is there already; name a folder that is new or empty", folder));
   const std::string name = fs::absolute(root, fault).lexically_normal().filename().string();
   const std::string title = name.empty() ? fs::absolute(root, fault).parent_path().filename().string() : name;
   constexpr std::string_view kFolder = "show/";
@@ -139,15 +133,15 @@ int new_file(const NewCommand& command) {
   if (name.ends_with(".lua")) name.resize(name.size() - 4);
   if (!good_name(name)) {
     const std::string near = nearest_good_name(name);
-    return fail(kUsage,
-                fmt::format("'{}' can't be a {}'s name: it has small letters, digits and _, begins with a "
+    return fail_new(
+        kUsage, fmt::format("'{}' can't be a {}'s name: it has small letters, digits and _, begins with a "
                             "letter, and is up to {} long{}",
                             command.name, kind, kMostName, near.empty() ? "" : fmt::format("; such as '{}'", near)));
   }
   const fs::path show = show_folder();
   if (show.empty()) {
-    return fail(kInput,
-                "there is no show here: go into one (a folder that holds scripts/), or make one: limber new show DIR");
+    return fail_new(
+        kInput, "there is no show here: go into one (a folder that holds scripts/), or make one: limber new show DIR");
   }
   const EmbeddedFile* const text = find_embedded(template_files(), scene ? "scene.lua" : "behavior.lua");
   LIMBER_CHECK(text != nullptr);

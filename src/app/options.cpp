@@ -16,6 +16,7 @@
 #include "app/console.h"
 #include "app/describe.h"
 #include "app/doctor.h"
+#include "app/exit_code.h"
 #include "app/inspect.h"
 #include "app/new.h"
 #include "app/paths.h"
@@ -27,7 +28,6 @@ namespace limber {
 
 namespace {
 
-constexpr int kUsage = 2;
 constexpr std::array<std::string_view, 8> kCommands = {"play",     "console", "new",      "inspect",
                                                        "describe", "bench",   "annotate", "doctor"};
 

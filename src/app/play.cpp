@@ -11,6 +11,7 @@
 
 #include <fmt/format.h>
 
+#include "app/exit_code.h"
 #include "app/paths.h"
 #include "app/scene_watch.h"
 #include "base/build_info.h"
@@ -23,16 +24,6 @@
 namespace limber {
 
 namespace {
-
-constexpr int kFine = 0;
-constexpr int kInput = 1;
-constexpr int kUsage = 2;
-constexpr int kMachine = 3;
-
-int fail(int code, std::string_view text) {
-  fmt::print(stderr, "limber: {}\n", printable(text));
-  return code;
-}
 
 // "PATH=VALUE": numbers parted by blanks or commas, true, false, text
 Result<Message> parse_set(const std::string& text) {

@@ -11,8 +11,8 @@ if(count EQUAL 0)
   set(body "std::span<const EmbeddedFile> ${NAME}_files() { return {}; }\n")
 else()
   # joined as text: a list would swallow the semicolons
-  string(CONCAT body "namespace {\nconstexpr EmbeddedFile kFiles[] = {\n${rows}};\n}  // namespace\n\n"
-           "std::span<const EmbeddedFile> ${NAME}_files() { return kFiles; }\n")
+  string(CONCAT body "std::span<const EmbeddedFile> ${NAME}_files() {\n"
+           "  static constexpr EmbeddedFile kFiles[] = {\n${rows}};\n  return kFiles;\n}\n")
 endif()
 file(WRITE "${TO}" "// Made by src/base/embed.cmake; the originals are in ${FROM}.\n"
      "#include \"base/embedded.h\"\n\nnamespace limber {\n\n${body}\n}  // namespace limber\n")

@@ -46,6 +46,21 @@ inline bool is_finite(const Quat& q) {
   return std::isfinite(q.x) && std::isfinite(q.y) && std::isfinite(q.z) && std::isfinite(q.w);
 }
 
+/// Between three numbers side by side, as stores and streams hold them, and a vector; four, x y z w, and a rotation.
+inline Vec3 vec3_at(const double* v) { return {v[0], v[1], v[2]}; }
+inline Quat quat_at(const double* v) { return quat_xyzw(v[0], v[1], v[2], v[3]); }
+inline void put(double* to, const Vec3& v) {
+  to[0] = v.x;
+  to[1] = v.y;
+  to[2] = v.z;
+}
+inline void put(double* to, const Quat& q) {
+  to[0] = q.x;
+  to[1] = q.y;
+  to[2] = q.z;
+  to[3] = q.w;
+}
+
 /// A rigid transform: first rotate, then shift.
 struct Pose {
   Vec3 position{0, 0, 0};

@@ -17,9 +17,9 @@ KeptBehavior kept_of(const Behavior& behavior) {
           behavior.setup(),       &table,          {values, values + table.kept_width()}};
 }
 
-class Applying {
+class ApplyingBehaviors {
  public:
-  Applying(const Application& a, const std::vector<Body*>& bodies, const std::vector<KeptBehavior>& kept)
+  ApplyingBehaviors(const Application& a, const std::vector<Body*>& bodies, const std::vector<KeptBehavior>& kept)
       : a_(a), bodies_(bodies), kept_(kept), list_(a.world.behaviors()) {}
 
   void run() {
@@ -186,7 +186,7 @@ void keep_behaviors(const Body& body, std::vector<KeptBehavior>& kept) {
 
 void apply_behaviors(const Application& application, const std::vector<Body*>& bodies,
                      const std::vector<KeptBehavior>& kept) {
-  Applying(application, bodies, kept).run();
+  ApplyingBehaviors(application, bodies, kept).run();
 }
 
 }  // namespace limber

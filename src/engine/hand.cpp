@@ -6,7 +6,7 @@
 namespace limber {
 
 namespace {
-constexpr std::size_t kMostValues = 65536;  // a flood of ever new addresses ends here
+constexpr std::size_t kMostRemembered = 65536;  // a flood of ever new addresses ends here
 }
 
 void PerformerHand::remember(const Message& message) {
@@ -18,7 +18,7 @@ void PerformerHand::remember(const Message& message) {
   }
   auto known = values_.find(key_);
   if (known == values_.end()) {
-    if (values_.size() >= kMostValues) return;
+    if (values_.size() >= kMostRemembered) return;
     known = values_.emplace(key_, Value{}).first;
   }
   known->second.message = message;
@@ -27,7 +27,7 @@ void PerformerHand::remember(const Message& message) {
 
 void PerformerHand::give_back(const std::string& address) {
   if (values_.empty()) return;
-  if (returned_.size() >= kMostValues && !returned_.contains(address)) return;
+  if (returned_.size() >= kMostRemembered && !returned_.contains(address)) return;
   returned_[address] = ++order_;
 }
 

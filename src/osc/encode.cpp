@@ -15,8 +15,6 @@ namespace limber {
 
 namespace {
 
-std::size_t padded(std::size_t length) { return (length / 4 + 1) * 4; }
-
 std::size_t message_size(const Message& message) {
   std::size_t size = padded(std::strlen(message.address.c_str())) + padded(1 + message.args.size());
   for (const Arg& arg : message.args) size += arg.is_text() ? padded(std::strlen(arg.text.c_str())) : 4;
@@ -63,7 +61,7 @@ std::span<const char> write_packet(PacketBuffer& buffer, const Write& write) {
 }  // namespace
 
 std::span<const char> encode_message(const Message& message, PacketBuffer& buffer) {
-  if (message_size(message) > PacketBuffer::kMost) return {};
+  if (message_size(message) > kLargestPacket) return {};
   return write_packet(buffer, [&](osc::OutboundPacketStream& out) {
     out << osc::BeginMessage(message.address.c_str());
     for (const Arg& arg : message.args) write_argument(arg, out);

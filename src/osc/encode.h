@@ -7,13 +7,13 @@
 #include <span>
 
 #include "base/message.h"
+#include "osc/wire.h"
 
 namespace limber {
 
 /// Room for one datagram, and a little more, because oscpack asks for more than it writes.
 struct PacketBuffer {
-  static constexpr std::size_t kMost = 65504;
-  alignas(8) std::array<char, kMost + 64> bytes;
+  alignas(8) std::array<char, kLargestPacket + 64> bytes;
 };
 
 /// Writes a message: numbers as f (clamped to float's range), booleans as i 0 or 1, nothing as i 0, text as s up to

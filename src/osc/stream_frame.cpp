@@ -8,23 +8,20 @@
 
 #include "base/check.h"
 #include "base/text.h"
+#include "osc/wire.h"
 
 namespace limber {
 
 namespace {
 
-constexpr std::size_t kLargest = 65504;
 constexpr std::size_t kDefaultBundle = 1472;  // what an Ethernet frame holds
 constexpr std::size_t kMostUnbundled = 20;    // bodies, where nothing else is wished
-constexpr std::size_t kBundleHeader = 16;
 
 void put_u32(char* to, std::uint32_t value) {
   static_assert(std::endian::native == std::endian::little);
   value = __builtin_bswap32(value);
   std::memcpy(to, &value, sizeof value);
 }
-
-std::size_t padded(std::size_t length) { return (length / 4 + 1) * 4; }
 
 // appends text with its NULs up to a multiple of 4
 void append_text(std::vector<char>& bytes, std::string_view text) {
@@ -91,7 +88,7 @@ void StreamFrame::add_message(const Stream& stream, const RosterBody& body, std:
   const std::string_view address = stream.address;
   const std::size_t count = body.joints.size() * stream.width;
   const std::size_t size = padded(address.size()) + padded(2 + count) + padded(body.name.size()) + 4 * count;
-  if (size > kLargest) {
+  if (size > kLargestPacket) {
     if (too_large_.empty() || too_large_.back() != body.name) too_large_.push_back(body.name);
     return;
   }

@@ -4,11 +4,11 @@
 #include <cstdint>
 #include <cstring>
 
+#include "osc/wire.h"
+
 namespace limber {
 
 namespace {
-
-constexpr std::size_t kBundleHeader = 16;  // "#bundle", its NUL, eight bytes of time tag
 
 std::uint32_t read_u32(const char* p) {
   const auto* b = reinterpret_cast<const unsigned char*>(p);
@@ -29,10 +29,9 @@ struct Walk {
 std::size_t string_size(const char* p, std::size_t left) {
   const void* end = std::memchr(p, 0, left);
   if (end == nullptr) return 0;
-  const auto length = static_cast<std::size_t>(static_cast<const char*>(end) - p);
-  const std::size_t padded = (length / 4 + 1) * 4;
-  if (padded > left || p[padded - 1] != 0) return 0;
-  return padded;
+  const std::size_t size = padded(static_cast<std::size_t>(static_cast<const char*>(end) - p));
+  if (size > left || p[size - 1] != 0) return 0;
+  return size;
 }
 
 const char* Walk::element(const char* data, std::size_t size, int depth) {
@@ -132,7 +131,7 @@ const char* Walk::message(const char* data, std::size_t size) {
 }  // namespace
 
 const char* packet_fault(const char* data, std::size_t size) {
-  if (size > OscLimits::kPacket) return "larger than 65504 bytes";
+  if (size > kLargestPacket) return "larger than 65504 bytes";
   Walk walk;
   return walk.element(data, size, 0);
 }

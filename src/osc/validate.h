@@ -8,7 +8,6 @@ namespace limber {
 
 /// Limits on what is let in. Sizes in bytes.
 struct OscLimits {
-  static constexpr std::size_t kPacket = 65504;      ///< The largest UDP payload that is a multiple of 4.
   static constexpr std::size_t kString = 1024;       ///< Addresses and strings, without their padding.
   static constexpr int kDepth = 8;                   ///< Bundles inside each other; a bare message has depth 0.
   static constexpr int kMessageArguments = 4096;     ///< Type tags of one message.

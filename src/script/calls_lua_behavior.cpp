@@ -14,7 +14,7 @@ namespace limber::calls {
 namespace {
 
 template <class T>
-std::int32_t item(ScriptContext& c, std::span<T* const> list, std::int32_t index) {
+std::int32_t told(ScriptContext& c, std::span<T* const> list, std::int32_t index) {
   if (index < 0) return static_cast<std::int32_t>(list.size());
   return c.tell(list[static_cast<std::size_t>(index)]->id());
 }
@@ -63,9 +63,9 @@ std::int32_t behavior_item(void* c, std::int32_t slot, std::int32_t generation, 
   ScriptContext& context = context_of(c);
   const Behavior* behavior = behavior_of(context, id_of(slot, generation));
   if (behavior == nullptr) return kGone;
-  if (kind == 1) return item(context, behavior->parts(), index);
-  if (kind == 2) return item(context, behavior->joints(), index);
-  return item(context, behavior->motors(), index);
+  if (kind == 1) return told(context, behavior->parts(), index);
+  if (kind == 2) return told(context, behavior->joints(), index);
+  return told(context, behavior->motors(), index);
 }
 
 std::int32_t behavior_body(void* c, std::int32_t slot, std::int32_t generation) {
@@ -106,7 +106,7 @@ std::int32_t neighbor_part(void* c, std::int32_t slot, std::int32_t generation, 
   const Behavior* behavior = behavior_of(context, id_of(slot, generation));
   if (behavior == nullptr) return kGone;
   if (index == -2) return static_cast<std::int32_t>(behavior->group()->id().slot);
-  return item(context, behavior->group()->neighbor_parts(), index);
+  return told(context, behavior->group()->neighbor_parts(), index);
 }
 
 }  // namespace limber::calls

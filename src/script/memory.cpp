@@ -12,7 +12,7 @@ namespace {
 constexpr std::size_t kMegabyte = std::size_t{1} << 20u;
 constexpr std::size_t kLarge = 16 * kMegabyte;       // one such request stops the script that makes it
 constexpr std::size_t kImpossible = 32 * kMegabyte;  // one such request is refused
-constexpr std::size_t kAgain = kMegabyte / 4;
+constexpr std::size_t kAlarmStep = kMegabyte / 4;
 // What a call may add when the memory is full: less and less the more is held beyond the cap, so that the one who takes
 // most is stopped first; nothing at three times the cap.
 constexpr std::size_t kHeadroom = kMegabyte;
@@ -49,7 +49,7 @@ void* Memory::allocate(void* self, void* block, std::size_t before, std::size_t 
   if (got == nullptr && after != 0) return nullptr;
   m.used_ += after - before;
   if (m.used_ > m.alarm_ || large) {
-    m.alarm_ = m.used_ + kAgain;
+    m.alarm_ = m.used_ + kAlarmStep;
     m.full_(m.owner_);
   }
   return got;

@@ -17,14 +17,6 @@ namespace {
 
 using namespace rows;
 
-Vec3 vec_at(const double* v) { return {v[0], v[1], v[2]}; }
-
-void put(double* to, const Vec3& v) {
-  to[0] = v.x;
-  to[1] = v.y;
-  to[2] = v.z;
-}
-
 template <class T>
 T* find_by_name(const Store& store, NodeId group, std::string_view name) {
   const NodeId id = store.child(group, name);
@@ -391,7 +383,7 @@ std::uint64_t Body::state_hash(std::uint64_t hash) const {
 }
 
 void Body::read_position(double* out) const { put(out, pose().position); }
-void Body::write_position(const double* in) { set_pose({vec_at(in), pose().rotation}); }
+void Body::write_position(const double* in) { set_pose({vec3_at(in), pose().rotation}); }
 
 void Body::read_rotation(double* out) const {
   const Quat q = pose().rotation;
@@ -406,14 +398,14 @@ void Body::write_rotation(const double* in) { set_pose({pose().position, quat_xy
 void Body::read_linear_velocity(double* out) const { put(out, parts_.empty() ? Vec3(0) : root()->linear_velocity()); }
 
 void Body::write_linear_velocity(const double* in) {
-  for (const auto& part : parts_) part->set_velocity(vec_at(in), part->angular_velocity());
+  for (const auto& part : parts_) part->set_velocity(vec3_at(in), part->angular_velocity());
 }
 
 void Body::read_angular_velocity(double* out) const { put(out, parts_.empty() ? Vec3(0) : root()->angular_velocity()); }
 
 void Body::write_angular_velocity(const double* in) {
   if (parts_.empty()) return;
-  const Vec3 omega = vec_at(in);
+  const Vec3 omega = vec3_at(in);
   const Vec3 pivot = root()->center();
   const Vec3 velocity = root()->linear_velocity();
   for (const auto& part : parts_) part->set_velocity(velocity + glm::cross(omega, part->center() - pivot), omega);

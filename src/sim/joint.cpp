@@ -14,14 +14,14 @@ namespace {
 
 using namespace rows;
 
-struct LiveRows {
+struct JointLiveRows {
   const Row *value, *speed, *angles, *offsets, *relrot, *position, *rotation;
 };
 
-const LiveRows& live_rows() {
+const JointLiveRows& joint_live_rows() {
   static const auto at = [](const char* name) { return &Joint::table().at(name); };
-  static const LiveRows found{at("value"),  at("speed"),    at("angles"),  at("offsets"),
-                              at("relrot"), at("position"), at("rotation")};
+  static const JointLiveRows found{at("value"),  at("speed"),    at("angles"),  at("offsets"),
+                                   at("relrot"), at("position"), at("rotation")};
   return found;
 }
 
@@ -36,12 +36,6 @@ const LimitRows& limit_rows() {
                                {at("linear_stop_erp"), at("angular_stop_erp")},
                                {at("linear_stop_cfm"), at("angular_stop_cfm")}};
   return found;
-}
-
-void put(double* to, const Vec3& v) {
-  to[0] = v.x;
-  to[1] = v.y;
-  to[2] = v.z;
 }
 
 // relrot(), which is costly, where the angles do not say it already: same order, one reading, no turns to count off
@@ -178,7 +172,7 @@ void Joint::effect_limits() {
 
 void Joint::read_anew() {
   // told ones, since the constraint's may be no numbers after a blow-up
-  const double* told = body_.store().live_block(id_) + live_rows().angles->offset;
+  const double* told = body_.store().live_block(id_) + joint_live_rows().angles->offset;
   constraint_->reset({told[0], told[1], told[2]});
   tell();
 }
@@ -187,13 +181,13 @@ void Joint::take_start() { start_angles_ = constraint_->angles(); }
 
 void Joint::go_to_start() {
   Store& store = body_.store();
-  store.keep(id_, *live_rows().angles);
-  put(store.live_block(id_) + live_rows().angles->offset, start_angles_);
+  store.keep(id_, *joint_live_rows().angles);
+  put(store.live_block(id_) + joint_live_rows().angles->offset, start_angles_);
 }
 
 void Joint::tell() {
   double* live = body_.store().live_block(id_);
-  const LiveRows& rows = live_rows();
+  const JointLiveRows& rows = joint_live_rows();
   const btTransform& parent = parent_.rigid().getCenterOfMassTransform();
   const btTransform& frame = constraint_->frame_in_parent();
   const int own = own_axis();

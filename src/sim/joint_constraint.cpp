@@ -14,8 +14,6 @@ constexpr btScalar kLeastCosine2 = btScalar(0.01);
 // -1 when outer, middle, inner is an odd permutation of x, y, z.
 btScalar parity(int outer, int middle) { return btScalar((outer + 1) % 3 == middle ? 1 : -1); }
 
-std::size_t at(int i) { return static_cast<std::size_t>(i); }
-
 // How far from 0 an axis may get: the middle angle should be the one with the least reach.
 double reach(const AxisSettings& s) {
   if (s.free()) return kTurn * 1e3;

@@ -12,6 +12,9 @@
 
 namespace limber {
 
+/// An axis (0, 1, 2 along, 3, 4, 5 about x, y, z) as an index.
+inline std::size_t at(int axis) { return static_cast<std::size_t>(axis); }
+
 /// What an axis's motor does. A motor on a locked axis does nothing.
 enum class AxisDrive : std::uint8_t { off, spin, servo, spring };
 

@@ -24,7 +24,6 @@ constexpr btScalar kBrakePart = btScalar(0.7);
 /// from 0.7 on, arms of six parts and more begin to swing.
 constexpr btScalar kWarmStart = btScalar(0.5);
 
-std::size_t at(int i) { return static_cast<std::size_t>(i); }
 btScalar margin(int axis) { return axis < 3 ? kLinearMargin : kAngularMargin; }
 
 // Compliance (per load, at rest) as softness (per impulse): the solver repairs erp/h of the error per second.

@@ -39,10 +39,6 @@ const AxisRows& axis_rows() {
   return found;
 }
 
-void put(double* to, const Vec3& v) {
-  for (int i = 0; i < 3; i++) to[i] = v[i];
-}
-
 Row axis_flags(std::string name, std::string doc) {
   return axes(effect<&Motor::effect_axes>(flags3(std::move(name), {false, false, false}, std::move(doc))));
 }

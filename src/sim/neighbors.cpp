@@ -36,18 +36,16 @@ void put(const Vec3& v, float* out) {
 constexpr std::uint32_t kNoPlace = 0xffffffffu;
 
 // where a part's numbers lie in its live block
-struct LiveRows {
+struct PartOffsets {
   std::uint32_t position = Part::table().at("position").offset;
   std::uint32_t rotation = Part::table().at("rotation").offset;
   std::uint32_t velocity = Part::table().at("linear_velocity").offset;
   std::uint32_t spin = Part::table().at("angular_velocity").offset;
 };
-const LiveRows& live_rows() {
-  static const LiveRows found;
+const PartOffsets& part_offsets() {
+  static const PartOffsets found;
   return found;
 }
-
-Vec3 vec_at(const double* v) { return {v[0], v[1], v[2]}; }
 
 }  // namespace
 
@@ -78,9 +76,9 @@ NeighborSet::Spot NeighborSet::spot_of(const Part& part) const {
 
 Vec3 NeighborSet::center_of(const Spot& spot) const {
   const double* const live = world_.store().live().data() + spot.live;
-  const Vec3 origin = vec_at(live + live_rows().position);
+  const Vec3 origin = vec3_at(live + part_offsets().position);
   if (spot.centered) return origin;
-  const double* const q = live + live_rows().rotation;
+  const double* const q = live + part_offsets().rotation;
   return origin + quat_xyzw(q[0], q[1], q[2], q[3]) * spot.center;
 }
 
@@ -142,8 +140,8 @@ void NeighborSet::gather_motions() {
   motions_.resize(cloud_.size());
   for (std::size_t i = 0; i < motions_.size(); i++) {
     const double* const own = live + spots_[indices_[i]].live;
-    put(vec_at(own + live_rows().velocity), motions_[i].velocity);
-    put(vec_at(own + live_rows().spin), motions_[i].spin);
+    put(vec3_at(own + part_offsets().velocity), motions_[i].velocity);
+    put(vec3_at(own + part_offsets().spin), motions_[i].spin);
   }
 }
 
@@ -239,8 +237,8 @@ void NeighborSet::answer_by_totals(Answer& answer) {
   of_body_.assign(static_cast<std::size_t>(bodies_), Totals{});
   for (std::size_t k = 0; k < cloud_.size(); k++) {
     const Spot& spot = spots_[indices_[k]];
-    Totals one{1, Vec3(cloud_.x[k], cloud_.y[k], cloud_.z[k]), vec_at(live + spot.live + live_rows().velocity),
-               vec_at(live + spot.live + live_rows().spin)};
+    Totals one{1, Vec3(cloud_.x[k], cloud_.y[k], cloud_.z[k]), vec3_at(live + spot.live + part_offsets().velocity),
+               vec3_at(live + spot.live + part_offsets().spin)};
     Totals& body = of_body_[static_cast<std::size_t>(ordinals_[static_cast<std::size_t>(spot.body)])];
     for (Totals* sum : {&all, &body}) {
       sum->count += one.count;
@@ -259,8 +257,8 @@ void NeighborSet::answer_by_totals(Answer& answer) {
     NeighborMeans& means = answer.means[i];
     means.count = static_cast<std::uint32_t>(count);
     put((all.position - own.position) / count - center_of(spot), means.offset);
-    put((all.velocity - own.velocity) / count - vec_at(live + spot.live + live_rows().velocity), means.velocity);
-    put((all.spin - own.spin) / count - vec_at(live + spot.live + live_rows().spin), means.spin);
+    put((all.velocity - own.velocity) / count - vec3_at(live + spot.live + part_offsets().velocity), means.velocity);
+    put((all.spin - own.spin) / count - vec3_at(live + spot.live + part_offsets().spin), means.spin);
   }
 }
 
@@ -382,8 +380,8 @@ NeighborMeans NeighborSet::means_of(const Sum& sum, const Push& push, unsigned w
     means.offset[a] = sum.offset[a] * part;
     if ((want & kWantPush) != 0) means.push[a] = push.sum[a] * part;
     if ((want & kWantVelocity) == 0) continue;
-    means.velocity[a] = sum.velocity[a] * part - static_cast<float>(own[live_rows().velocity + a]);
-    means.spin[a] = sum.spin[a] * part - static_cast<float>(own[live_rows().spin + a]);
+    means.velocity[a] = sum.velocity[a] * part - static_cast<float>(own[part_offsets().velocity + a]);
+    means.spin[a] = sum.spin[a] * part - static_cast<float>(own[part_offsets().spin + a]);
   }
   return means;
 }

@@ -26,22 +26,6 @@ const LiveRows& live_rows() {
   return found;
 }
 
-Vec3 vec_at(const double* v) { return {v[0], v[1], v[2]}; }
-Quat quat_at(const double* v) { return quat_xyzw(v[0], v[1], v[2], v[3]); }
-
-void put(double* to, const Vec3& v) {
-  to[0] = v.x;
-  to[1] = v.y;
-  to[2] = v.z;
-}
-
-void put(double* to, const Quat& q) {
-  to[0] = q.x;
-  to[1] = q.y;
-  to[2] = q.z;
-  to[3] = q.w;
-}
-
 }  // namespace
 
 const Table& Part::table() {
@@ -119,7 +103,7 @@ const std::string& Part::name() const { return body_.store().name(id_); }
 
 Pose Part::pose() const {
   const Store& store = body_.store();
-  return {vec_at(store.values(id_, *live_rows().position)), quat_at(store.values(id_, *live_rows().rotation))};
+  return {vec3_at(store.values(id_, *live_rows().position)), quat_at(store.values(id_, *live_rows().rotation))};
 }
 
 Vec3 Part::center() const { return pose() * geometry_->frame.position; }
@@ -129,8 +113,8 @@ double Part::mass() const {
   return body_.store().values(id_, row)[0];
 }
 
-Vec3 Part::linear_velocity() const { return vec_at(body_.store().values(id_, *live_rows().linear_velocity)); }
-Vec3 Part::angular_velocity() const { return vec_at(body_.store().values(id_, *live_rows().angular_velocity)); }
+Vec3 Part::linear_velocity() const { return vec3_at(body_.store().values(id_, *live_rows().linear_velocity)); }
+Vec3 Part::angular_velocity() const { return vec3_at(body_.store().values(id_, *live_rows().angular_velocity)); }
 
 void Part::set_pose(const Pose& pose) {
   Store& store = body_.store();
@@ -298,9 +282,9 @@ Result<void> Part::refuse_mass(const double*) const {
 
 Result<void> Part::act_force(std::span<const double> a) {
   if (a.size() == 3) {
-    apply_force(vec_at(a.data()));
+    apply_force(vec3_at(a.data()));
   } else if (a.size() == 6) {
-    apply_force_at(vec_at(a.data()), vec_at(a.data() + 3));
+    apply_force_at(vec3_at(a.data()), vec3_at(a.data() + 3));
   } else {
     return Error{fmt::format("takes 3 numbers, or 6 with a point, not {}", a.size())};
   }
@@ -309,9 +293,9 @@ Result<void> Part::act_force(std::span<const double> a) {
 
 Result<void> Part::act_impulse(std::span<const double> a) {
   if (a.size() == 3) {
-    apply_impulse(vec_at(a.data()));
+    apply_impulse(vec3_at(a.data()));
   } else if (a.size() == 6) {
-    apply_impulse_at(vec_at(a.data()), vec_at(a.data() + 3));
+    apply_impulse_at(vec3_at(a.data()), vec3_at(a.data() + 3));
   } else {
     return Error{fmt::format("takes 3 numbers, or 6 with a point, not {}", a.size())};
   }
@@ -319,7 +303,7 @@ Result<void> Part::act_impulse(std::span<const double> a) {
 }
 
 Result<void> Part::act_torque(std::span<const double> a) {
-  apply_torque(vec_at(a.data()));
+  apply_torque(vec3_at(a.data()));
   return {};
 }
 

@@ -1,0 +1,16 @@
+// What the program's commands end with, as --help says: by these a script that calls them knows what to do.
+#pragma once
+
+#include <string_view>
+
+namespace limber {
+
+inline constexpr int kFine = 0;
+inline constexpr int kInput = 1;    ///< What was given (a scene, a model, an answer) is at fault.
+inline constexpr int kUsage = 2;    ///< The command line is.
+inline constexpr int kMachine = 3;  ///< The machine is: a port in use, a folder that can't be written.
+
+/// Says on stderr what went wrong, unprintable bytes escaped, and gives the code back.
+int fail(int code, std::string_view text);
+
+}  // namespace limber
