@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <optional>
 
 #include "sim/behavior_list.h"
 #include "sim/world.h"
@@ -58,6 +59,17 @@ NeighborSet::NeighborSet(World& world, std::vector<Part*> parts) : world_(world)
     if (slot >= ordinals_.size()) ordinals_.resize(slot + 1, -1);
     if (ordinals_[slot] < 0) ordinals_[slot] = bodies_++;
   }
+  number_parts();
+}
+
+void NeighborSet::number_parts() {
+  centers_.resize(parts_.size());
+  std::fill(numbers_.begin(), numbers_.end(), kNoPlace);
+  for (std::size_t i = 0; i < ids_.size(); i++) {
+    const auto slot = static_cast<std::size_t>(ids_[i].slot);
+    if (slot >= numbers_.size()) numbers_.resize(slot + 1, kNoPlace);
+    numbers_[slot] = static_cast<std::uint32_t>(i);
+  }
 }
 
 bool NeighborSet::holds(std::span<Part* const> parts) const {
@@ -90,11 +102,13 @@ void NeighborSet::gather() {
   for (std::size_t i = 0; i < parts_.size(); i++) {
     if (live[spots_[i].enabled] == 0) continue;
     const Vec3 at = center_of(spots_[i]);
+    centers_[i] = at;
     cloud_.add(static_cast<float>(at.x), static_cast<float>(at.y), static_cast<float>(at.z), spots_[i].body);
     indices_.push_back(static_cast<std::uint32_t>(i));
   }
   cloud_.one_each = static_cast<std::size_t>(bodies_) == parts_.size();
   motions_gathered_ = false;
+  lists_.begin();
   found_.resize(cloud_.size());
   for (const auto& grid : grids_) grid->used = false;
   for (Answer& answer : answers_) {
@@ -114,6 +128,7 @@ void NeighborSet::forget(const Body& body) {
   parts_.resize(kept);
   ids_.resize(kept);
   spots_.resize(kept);
+  number_parts();
   turn_ = 0;
 }
 
@@ -393,16 +408,26 @@ void NeighborSet::near(const Part& of, double radius, std::vector<Neighbor>& out
   // further than any two parts are from each other, yet its square is a float
   const auto reach = static_cast<float>(std::min(radius, 1e7));
   Grid& grid = grid_for(reach);
-  const Spot spot = spot_of(of);
-  const Vec3 center = center_of(spot);
-  const PointQuery query{static_cast<float>(center.x), static_cast<float>(center.y), static_cast<float>(center.z),
-                         spot.body};
-  const std::uint32_t count = grid.grid.near(query, 0, reach, found_.data());
-  for (std::uint32_t j = 0; j < count; j++) found_[j] = indices_[grid.grid.order()[found_[j]]];
-  std::sort(found_.begin(), found_.begin() + count);
-  for (std::uint32_t j = 0; j < count; j++) {
-    const Vec3 offset = center_of(spots_[found_[j]]) - center;
-    out.push_back({found_[j], offset, glm::length(offset)});
+  const std::uint32_t slot = of.id().slot;
+  const std::uint32_t own = slot < numbers_.size() ? numbers_[slot] : kNoPlace;
+  std::optional<std::span<const std::uint32_t>> near;
+  const bool known = own != kNoPlace && world_.store().live()[spots_[own].enabled] != 0;
+  if (known) near = lists_.of(own, reach, {cloud_, grid.grid, indices_, parts_.size()});
+  const Spot spot = known ? spots_[own] : spot_of(of);
+  const Vec3 center = known ? centers_[own] : center_of(spot);
+  if (!near) {
+    const PointQuery query{static_cast<float>(center.x), static_cast<float>(center.y), static_cast<float>(center.z),
+                           spot.body};
+    const std::uint32_t count = grid.grid.near(query, 0, reach, found_.data());
+    for (std::uint32_t j = 0; j < count; j++) found_[j] = indices_[grid.grid.order()[found_[j]]];
+    std::sort(found_.begin(), found_.begin() + count);
+    near = std::span<const std::uint32_t>(found_.data(), count);
+  }
+  out.resize(near->size());
+  for (std::size_t j = 0; j < near->size(); j++) {
+    const std::uint32_t i = (*near)[j];
+    const Vec3 offset = centers_[i] - center;
+    out[j] = {i, offset, glm::length(offset)};
   }
 }
 

@@ -9,6 +9,7 @@
 
 #include "base/id.h"
 #include "base/vec.h"
+#include "sim/neighbor_lists.h"
 #include "sim/point_grid.h"
 
 namespace limber {
@@ -97,6 +98,7 @@ class NeighborSet {
     Vec3 position{0}, velocity{0}, spin{0};
   };
 
+  void number_parts();
   Spot spot_of(const Part& part) const;
   Vec3 center_of(const Spot& spot) const;
   void gather();
@@ -121,6 +123,9 @@ class NeighborSet {
   std::vector<Part*> parts_;
   std::vector<NodeId> ids_;
   std::vector<Spot> spots_;
+  std::vector<std::uint32_t> numbers_;  // of parts by their slots
+  std::vector<Vec3> centers_;           // of mass, of the parts whose bodies are in the world
+  NeighborLists lists_;
   std::vector<std::int32_t> ordinals_;  // of bodies by their slots; -1: of no part here
   std::int32_t bodies_ = 0;
   std::uint64_t turn_ = 0;              // of the behaviours, that was gathered for

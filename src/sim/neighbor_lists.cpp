@@ -1,0 +1,61 @@
+// Lists of neighbours, all at once.
+#include "sim/neighbor_lists.h"
+
+#include <algorithm>
+#include <utility>
+
+namespace limber {
+
+void NeighborLists::begin() {
+  for (Lists& lists : lists_) {
+    lists.asked_before = std::exchange(lists.asked, 0);
+    lists.made = false;
+  }
+}
+
+// one that nobody asks for any more is used again
+NeighborLists::Lists& NeighborLists::lists_for(float reach) {
+  Lists* free = nullptr;
+  for (Lists& lists : lists_) {
+    if (lists.reach == reach) return lists;
+    if (lists.asked == 0 && lists.asked_before == 0) free = &lists;
+  }
+  if (free == nullptr) free = &lists_.emplace_back();
+  free->reach = reach;
+  return *free;
+}
+
+std::optional<std::span<const std::uint32_t>> NeighborLists::of(std::uint32_t part, float reach, const Source& source) {
+  Lists& lists = lists_for(reach);
+  lists.asked++;
+  if (!lists.made) {
+    if (2 * lists.asked_before < source.part_count) return std::nullopt;
+    make(lists, source);
+  }
+  return std::span<const std::uint32_t>(lists.all).subspan(lists.first[part], lists.count[part]);
+}
+
+void NeighborLists::make(Lists& lists, const Source& source) {
+  const std::span<const std::uint32_t> order = source.grid.order();
+  found_.resize(order.size());
+  part_at_.resize(order.size());
+  for (std::size_t place = 0; place < order.size(); place++) part_at_[place] = source.parts[order[place]];
+  lists.first.assign(source.part_count, 0);
+  lists.count.assign(source.part_count, 0);
+  lists.all.clear();
+  // points of one cell ask one after the other: what may be near them is gathered once
+  const PointCloud& cloud = source.cloud;
+  for (std::size_t place = 0; place < order.size(); place++) {
+    const std::size_t point = order[place];
+    const PointQuery query{cloud.x[point], cloud.y[point], cloud.z[point], cloud.body[point]};
+    const std::uint32_t count = source.grid.near(query, 0, lists.reach, found_.data());
+    const std::size_t first = lists.all.size();
+    for (std::uint32_t j = 0; j < count; j++) lists.all.push_back(part_at_[found_[j]]);
+    std::sort(lists.all.begin() + static_cast<std::ptrdiff_t>(first), lists.all.end());
+    lists.first[part_at_[place]] = static_cast<std::uint32_t>(first);
+    lists.count[part_at_[place]] = count;
+  }
+  lists.made = true;
+}
+
+}  // namespace limber
