@@ -269,6 +269,8 @@ function body_:state_hash() end
 ---@field linear_velocity vec3like # m/s, -10000 .. 10000. Velocity of the centre of mass, world.
 ---@field angular_velocity vec3like # rad/s, -10000 .. 10000. Angular velocity, world axes.
 ---@field center vec3 # read-only, m. Centre of mass, world.
+---@field inertia vec3 # read-only, kg·m². Moments of inertia about the principal axes; static: 0.
+---@field principal_axes quat # read-only. Principal axes of inertia, world: x y z w.
 local part_ = {}
 
 ---@class part_opts

@@ -32,6 +32,8 @@ constexpr std::array kUnits = {
     Unit{"N·m·s/rad", "newton metre second per radian"},
     Unit{"N·s/m | N·m·s/rad", "newton second per metre along, newton metre second per radian about the axis"},
     Unit{"1/s", "fraction lost per second"},
+    Unit{"1/s²", "per second squared"},
+    Unit{"kg·m²", "kilogram metre squared"},
     Unit{"× real time", "simulated seconds per real second"},
 };
 }  // namespace

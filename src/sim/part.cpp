@@ -54,6 +54,10 @@ const Table& Part::table() {
           live(state(effect<&Part::effect_velocity>(
               vec3("angular_velocity", "rad/s", {0, 0, 0}, -1e4, 1e4, "Angular velocity, world axes.")))),
           view<&Part::read_center>(readout(vec3("center", "m", {0, 0, 0}, -1e6, 1e6, "Centre of mass, world."))),
+          view<&Part::read_inertia>(readout(vec3("inertia", "kg·m²", {0, 0, 0}, 0, kUnbounded,
+                                                 "Moments of inertia about the principal axes; static: 0."))),
+          view<&Part::read_principal_axes>(
+              readout(rows::quat("principal_axes", "Principal axes of inertia, world: x y z w."))),
           act<&Part::act_force>(
               action("apply_force", 3, 6, "Force in N for one tick, world; at a world point, else the centre.")),
           act<&Part::act_impulse>(
@@ -274,6 +278,10 @@ void Part::effect_reports() {
 }
 
 void Part::read_center(double* out) const { put(out, center()); }
+void Part::read_inertia(double* out) const {
+  put(out, geometry_->unit_inertia * body_.store().values(id_, table().at("mass"))[0]);
+}
+void Part::read_principal_axes(double* out) const { put(out, principal_axes()); }
 
 Result<void> Part::refuse_mass(const double*) const {
   if (!is_static_) return {};

@@ -95,6 +95,8 @@ class Part {
   void effect_surface();
   void effect_reports();
   void read_center(double* out) const;
+  void read_inertia(double* out) const;
+  void read_principal_axes(double* out) const;
   Result<void> refuse_mass(const double* in) const;
   Result<void> act_force(std::span<const double> args);
   Result<void> act_impulse(std::span<const double> args);
