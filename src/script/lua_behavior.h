@@ -30,7 +30,9 @@ class LuaBehavior final : public Behavior {
 
  private:
   bool ready();
-  bool well(BehaviorFault fault);
+  /// Makes a call; one that fails is taken back and suspends it.
+  template <class Call>
+  bool well(Call call);
 
   /// A state on its way from another instance, and the text of the file whose it was.
   struct Inheritance {
@@ -43,6 +45,7 @@ class LuaBehavior final : public Behavior {
   std::int32_t number_ = 0;  // in the Vm; 0: not there yet
   bool started_ = false;
   std::optional<Inheritance> inherited_;
+  Progress before_;  // scratch of a call
 };
 
 }  // namespace limber

@@ -176,6 +176,7 @@ void Vm::keep_entries() {
     make_behavior_ = keep("make_behavior");
     renew_behavior_ = keep("renew_behavior");
     restore_behavior_ = keep("restore_behavior");
+    migrated_behavior_ = keep("migrated_behavior");
     behavior_state_ = keep("behavior_state");
     drop_behavior_ = keep("drop_behavior");
     behavior_self_ = keep("behavior_self");

@@ -98,6 +98,7 @@ class Vm {
   int make_behavior_ = -1;
   int renew_behavior_ = -1;
   int restore_behavior_ = -1;
+  int migrated_behavior_ = -1;
   int behavior_state_ = -1;
   int drop_behavior_ = -1;
   int behavior_self_ = -1;  // tables by the number of the instance

@@ -1,5 +1,4 @@
 // The Vm's calls for behaviours of behaviors_lua/.
-#include <fmt/format.h>
 #include <lua.hpp>
 
 #include "script/vm.h"
@@ -70,28 +69,22 @@ BehaviorFault Vm::step_behavior(std::int32_t number, double dt) {
 
 BehaviorFault Vm::restore_behavior(std::int32_t number, std::string_view state, bool migrate) {
   lua_State* const L = state_.get();
-  const auto give = [&](const char* text, std::size_t size) {
-    lua_rawgeti(L, LUA_REGISTRYINDEX, restore_behavior_);
-    lua_pushnumber(L, number);
-    if (text != nullptr) {
-      lua_pushlstring(L, text, size);
-    } else {
-      lua_pushvalue(L, 1);  // what migrate gave
-    }
-  };
-  give(state.data(), state.size());
-  call(2, 1);
-  if (!migrate || !push_behavior(behavior_migrate_, number)) {
+  lua_rawgeti(L, LUA_REGISTRYINDEX, restore_behavior_);
+  lua_pushnumber(L, number);
+  lua_pushlstring(L, state.data(), state.size());
+  if (!call(2, 1) || !migrate || !push_behavior(behavior_migrate_, number)) {
     lua_settop(L, 0);
     return {};
   }
   lua_pushvalue(L, 1);  // the old state
   if (BehaviorFault fault = guarded_behavior(2, 1); !fault.text.empty()) return fault;
-  lua_replace(L, 1);
-  lua_settop(L, 1);
-  give(nullptr, 0);
+  lua_rawgeti(L, LUA_REGISTRYINDEX, migrated_behavior_);
+  lua_pushnumber(L, number);
+  lua_pushvalue(L, -3);
   BehaviorFault fault;
-  if (call(2, 2) && !lua_isnil(L, -1)) fault = {string_at(L, -1), "", 0};
+  if (call(2, 3) && !lua_isnil(L, -3)) {
+    fault = {string_at(L, -3), string_at(L, -2), static_cast<int>(lua_tointeger(L, -1))};
+  }
   lua_settop(L, 0);
   return fault;
 }

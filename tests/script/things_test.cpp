@@ -264,7 +264,7 @@ TEST(Things, ErrorTexts) {
       {"m1.angular_active = 1",
        "motor 'arm/joint_1': 'angular_active' takes three booleans, or one for all axes, not 1"},
       {"m1.angular_active[3] = true", "three booleans never change alone; set the whole: { false, false, true }"},
-      {"link.position.z = 2", "a vec3 or quat never changes; set the whole value"},
+      {"link.position.z = 2", "this member never changes; of a vec3 or quat set the whole value"},
       {"link.name = 'x'", "part 'arm/link': 'name' can be read, not set"},
       {"link.apply_force = 1", "part 'arm/link': 'apply_force' is a method: call it with a colon, it can't be set"},
       {"link.apply_force(vec3())",

@@ -1,82 +1,98 @@
 -- Plain data as text and back: what `state` may hold, on its way from one Lua state to the next. Numbers, text, true and
--- false, vec3, quat, and tables of them.
+-- false, vec3, quat, three booleans, and tables of them; equal values give equal texts.
 local P = ...
-local V, Q, istype, describe = P.V, P.Q, P.ffi.istype, P.describe
-local format, sub, find = string.format, string.sub, string.find
+local ffi, V, Q, F, istype, describe = P.ffi, P.V, P.Q, P.F, P.ffi.istype, P.describe
+local format, byte, sub, find = string.format, string.byte, string.sub, string.find
 
 local kDeepest = 100
+P.plain_kinds = "state holds numbers, text, true and false, vec3, quat, and tables of them"
 
--- "targets[3].x"
+-- numbers go to the bit
+local buffer = ffi.new("double[4]")
+local function bytes(x, y, z, w)
+  buffer[0], buffer[1], buffer[2], buffer[3] = x, y or 0, z or 0, w or 0
+  return ffi.string(buffer, w and 32 or z and 24 or 8)
+end
+
+-- "state.targets[3].x"
 local function place(path, key)
   if type(key) == "string" and find(key, "^[%a_][%w_]*$") then return path .. "." .. key end
   return format(type(key) == "string" and "%s['%s']" or "%s[%s]", path, tostring(key))
 end
 
-local function refuse(path, what)
-  error(format("%s %s; state holds numbers, text, true and false, vec3, quat, and tables of them", path, what), 0)
-end
-
-local function number(x) return format("%.17g;", x) end
-
--- each value is a letter and what belongs to it: a number ends with ;, a text begins with its length
-local put
-local function put_table(out, path, t, above)
-  if above.n >= kDeepest then error(format("%s lies more than %d tables deep", path, kDeepest), 0) end
-  if above[t] then refuse(path, "is a table inside itself") end
-  if debug.getmetatable(t) then refuse(path, "is a table with a metatable") end
+local function less(a, b) return a < b end
+-- keys in a fixed order: numbers, texts, false and true; others are none that can be kept
+local function keys_of(t, path, refuse)
+  local keys, texts = {}, {}
   for key in next, t do
     local kind = type(key)
-    if kind ~= "number" and kind ~= "string" and kind ~= "boolean" then
-      refuse(path, "has a key that is " .. describe(key))
-    end
+    if kind == "number" then keys[#keys + 1] = key
+    elseif kind == "string" then texts[#texts + 1] = key
+    elseif kind ~= "boolean" then refuse(path, "has a key that is " .. describe(key)) end
   end
-  above[t], above.n = true, above.n + 1
-  out[#out + 1] = "t"
-  for key, value in P.pairs(t) do
-    put(out, path, key)
-    put(out, place(path, key), value, above)
-  end
-  out[#out + 1] = "e"
-  above[t], above.n = nil, above.n - 1
+  table.sort(keys, less)
+  table.sort(texts, less)
+  for i = 1, #texts do keys[#keys + 1] = texts[i] end
+  if t[false] ~= nil then keys[#keys + 1] = false end
+  if t[true] ~= nil then keys[#keys + 1] = true end
+  return keys
 end
-function put(out, path, value, above)
+
+-- Each value is a letter and what belongs to it; a text begins with its length. What is no plain data is told to
+-- refuse(path, what) and left out, its key too.
+local put
+local function put_table(out, path, t, refuse, above, depth)
+  if above[t] then return refuse(path, "is a table inside itself") end
+  if depth > kDeepest then return refuse(path, format("lies more than %d tables deep", kDeepest)) end
+  if debug.getmetatable(t) then return refuse(path, "is a table with a metatable") end
+  above[t] = true
+  out[#out + 1] = "{"
+  for _, key in ipairs(keys_of(t, path, refuse)) do
+    local mark = #out
+    put(out, path, key, refuse, above, depth)
+    put(out, place(path, key), t[key], refuse, above, depth + 1)
+    if #out == mark + 1 then out[#out] = nil end
+  end
+  out[#out + 1] = "}"
+  above[t] = nil
+end
+function put(out, path, value, refuse, above, depth)
   local kind = type(value)
   if kind == "number" then
-    out[#out + 1] = "n" .. number(value)
+    out[#out + 1] = "n" .. bytes(value)
   elseif kind == "string" then
     out[#out + 1] = "s" .. #value .. ";" .. value
   elseif kind == "boolean" then
-    out[#out + 1] = value and "y" or "z"
+    out[#out + 1] = value and "t" or "f"
   elseif kind == "table" then
-    put_table(out, path, value, above)
+    put_table(out, path, value, refuse, above, depth)
   elseif istype(V, value) then
-    out[#out + 1] = "v" .. number(value.x) .. number(value.y) .. number(value.z)
+    out[#out + 1] = "v" .. bytes(value.x, value.y, value.z)
   elseif istype(Q, value) then
-    out[#out + 1] = "q" .. number(value.x) .. number(value.y) .. number(value.z) .. number(value.w)
+    out[#out + 1] = "q" .. bytes(value.x, value.y, value.z, value.w)
+  elseif istype(F, value) then
+    out[#out + 1] = "b" .. bytes(value.x and 1 or 0, value.y and 1 or 0, value.z and 1 or 0)
   else
     refuse(path, "is " .. describe(value))
   end
 end
 
--- the text, or nothing and what can't be kept; `name` is what messages call the value
-function P.plain_text(value, name)
+-- a value as text; `name` is what refuse() is told it is called. Empty: it is nil, or was refused
+function P.plain_text(value, name, refuse)
   local out = {}
-  local ok, fault = pcall(put, out, name, value, { n = 0 })
-  if not ok then return nil, fault end
+  if value ~= nil then put(out, name, value, refuse, {}, 1) end
   return table.concat(out)
 end
 
-local words = { nan = 0 / 0, ["-nan"] = 0 / 0, inf = math.huge, ["-inf"] = -math.huge }
-local function take_number(text, at)
-  local stop = find(text, ";", at, true)
-  local word = sub(text, at, stop - 1)
-  return words[word] or tonumber(word), stop + 1
-end
-
+-- reading: what stands at a place, and the place behind it
 local take
+local function doubles(text, at, count)
+  ffi.copy(buffer, sub(text, at, at + 8 * count - 1), 8 * count)
+  return at + 8 * count
+end
 local function take_table(text, at)
   local t, key, value = {}, nil, nil
-  while sub(text, at, at) ~= "e" do
+  while byte(text, at) ~= 125 do
     key, at = take(text, at)
     value, at = take(text, at)
     t[key] = value
@@ -86,18 +102,23 @@ end
 function take(text, at)
   local kind = sub(text, at, at)
   at = at + 1
-  if kind == "t" then return take_table(text, at) end
-  if kind == "y" or kind == "z" then return kind == "y", at end
-  local a, b, c, d
-  a, at = take_number(text, at)
-  if kind == "n" then return a, at end
-  if kind == "s" then return sub(text, at, at + a - 1), at + a end
-  b, at = take_number(text, at)
-  c, at = take_number(text, at)
-  if kind == "v" then return V(a, b, c), at end
-  d, at = take_number(text, at)
-  return Q(a, b, c, d), at
+  if kind == "{" then return take_table(text, at) end
+  if kind == "t" or kind == "f" then return kind == "t", at end
+  if kind == "s" then
+    local stop = find(text, ";", at, true)
+    local last = stop + tonumber(sub(text, at, stop - 1))
+    return sub(text, stop + 1, last), last + 1
+  end
+  at = doubles(text, at, kind == "n" and 1 or kind == "q" and 4 or 3)
+  local x, y, z = buffer[0], buffer[1], buffer[2]
+  if kind == "n" then return x, at end
+  if kind == "v" then return V(x, y, z), at end
+  if kind == "q" then return Q(x, y, z, buffer[3]), at end
+  return F(x ~= 0, y ~= 0, z ~= 0), at
 end
 
 -- what plain_text has written
-function P.plain_value(text) return (take(text, 1)) end
+function P.plain_value(text)
+  if text == "" then return nil end
+  return (take(text, 1))
+end

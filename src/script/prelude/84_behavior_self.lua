@@ -51,7 +51,8 @@ ffi.metatype(S, {
 local ipairs_of_things = P.ipairs
 function P.ipairs(t)
   if istype(S, t) then return next_item, t, 0 end
-  return ipairs_of_things(t)
+  local f, s, i = ipairs_of_things(t)
+  return f, s, i
 end
 
 local function keep_list(instance, name, items)
@@ -170,20 +171,31 @@ end
 -- what it acts on may have changed
 function entry.renew_behavior(number) drop_lists(instances[number]) end
 
--- takes a state, as text or as what migrate gave: the state, or nothing and what is wrong
-function entry.restore_behavior(number, state)
-  local instance = instances[number]
-  if type(state) == "string" then state = P.plain_value(state) end
-  if type(state) ~= "table" then
-    return nil, string.format("%s: %s: migrate returns the new state, a table, not %s", instance.type.shown,
-      P.label(instance.handle), describe(state))
-  end
-  instance.state = state
+-- takes a state as text: the state
+function entry.restore_behavior(number, text)
+  local state = P.plain_value(text)
+  instances[number].state = state
   return state
 end
 
+-- takes what migrate gave; else text, file and line of what is wrong
+function entry.migrated_behavior(number, state)
+  local instance = instances[number]
+  if type(state) == "table" then
+    instance.state = state
+    return nil
+  end
+  local file, line = instance.type.shown, debug.getinfo(instance.type.migrate, "S").linedefined
+  return string.format("%s:%d: %s: migrate returns the new state, a table, not %s", file, line,
+    P.label(instance.handle), describe(state)), file, line
+end
+
+-- as text, or nothing and what can't be kept
+local function refuse(path, what) error(string.format("%s %s; %s", path, what, P.plain_kinds), 0) end
 function entry.behavior_state(number)
-  return P.plain_text(instances[number].state, "state")
+  local ok, text = pcall(P.plain_text, instances[number].state, "state", refuse)
+  if ok then return text end
+  return nil, text
 end
 
 function entry.drop_behavior(number)

@@ -43,7 +43,7 @@ local function explain(message)
     return message .. "; members take a dot, only methods a colon"
   end
   if message == "attempt to write to constant location" then
-    return "a vec3 or quat never changes; set the whole value"
+    return "this member never changes; of a vec3 or quat set the whole value"
   end
   return message
 end

@@ -1,0 +1,99 @@
+// self:neighbors and self.neighbor_parts of a group's members in Lua.
+#include <gtest/gtest.h>
+
+#include "behavior_stage.h"
+
+namespace limber {
+namespace {
+
+// balls at x = 1, 2, 3 … m, each a body; a group of the type "test" on all
+std::string row_of_balls(int count, const std::string& opts = "{}") {
+  return "sim.gravity = vec3()\nlocal ball = sim:add_sphere_shape('ball', 0.1)\nfor i = 1, " + std::to_string(count) +
+         " do sim:add_body('b' .. i):add_part('ball', ball, { mass = i, position = vec3(i, 0, 0) }) end\n"
+         "local group = sim:add_group_behavior('test', 'swarm', " +
+         opts + ")\n";
+}
+
+std::string group(const std::string& step) {
+  return "return behavior { group = true, params = { { 'radius', 1.5 } }, step = function(self)\n" + step + "\nend }";
+}
+
+std::vector<std::string> said(const std::string& step, const std::string& opts = "{}") {
+  BehaviorStage stage;
+  stage.write("behaviors_lua/test.lua", group(step));
+  EXPECT_EQ(stage.play(row_of_balls(4, opts), 1), "");
+  for (const auto& body : stage.world.bodies()) {
+    for (const Behavior* behavior : body->behaviors()) EXPECT_EQ(behavior->error(), "");
+  }
+  return stage.host.printed;
+}
+
+using Lines = std::vector<std::string>;
+
+TEST(BehaviorNeighbors, AreThoseWithinTheRadiusInOrder) {
+  EXPECT_EQ(said("local text = self.body.name .. ':' for other, offset, distance in self:neighbors(self.parts[1], "
+                 "self.radius) do text = text .. ' ' .. other.body.name .. ' ' .. offset.x .. ' ' .. distance end "
+                 "print(text)"),
+            (Lines{"b1: b2 1 1", "b2: b1 -1 1 b3 1 1", "b3: b2 -1 1 b4 1 1", "b4: b3 -1 1"}));
+}
+
+TEST(BehaviorNeighbors, ARadiusOfNothingFindsNobody) {
+  EXPECT_EQ(said("local n = 0 for _ in self:neighbors(self.parts[1], -1) do n = n + 1 end print(n)"),
+            (Lines{"0", "0", "0", "0"}));
+}
+
+TEST(BehaviorNeighbors, LoopsStandInsideEachOther) {
+  // of each neighbour the neighbours, own body left out at every level
+  EXPECT_EQ(
+      said("if self.body.name ~= 'b2' then return end local names = {}\n"
+           "for other in self:neighbors(self.parts[1], 1.5) do\n"
+           "  for next in self:neighbors(other, 1.5) do names[#names + 1] = other.body.name .. next.body.name end\n"
+           "end print(table.concat(names, ' '))"),
+      (Lines{"b1b2 b3b2 b3b4"}));
+}
+
+TEST(BehaviorNeighbors, NeighborPartsAreThoseOfTheOthers) {
+  EXPECT_EQ(said("local names = {} for i, part in ipairs(self.neighbor_parts) do names[i] = part.body.name end "
+                 "print(#self.neighbor_parts, table.concat(names, ' '))",
+                 "{ bodies = { 'b1', 'b2', 'b4' } }"),
+            (Lines{"2\tb2 b4", "2\tb1 b4", "2\tb1 b2"}));
+}
+
+TEST(BehaviorNeighbors, FollowBodiesThatComeAndGo) {
+  BehaviorStage stage;
+  stage.write("behaviors_lua/test.lua",
+              group("local text = self.body.name .. ':' for other in self:neighbors(self.parts[1], 1.5) do text = text "
+                    ".. ' ' .. other.body.name end print(text .. ' of ' .. #self.neighbor_parts)"));
+  ASSERT_EQ(stage.play(row_of_balls(2) + R"(
+sim:after(0.01, function() sim:body("b2"):copy("b3", { position = vec3(3, 0, 0) }) end)
+sim:after(0.03, function() sim:body("b2"):remove() end)
+)",
+                       3),
+            "");
+  EXPECT_EQ(stage.host.printed, (Lines{"b1: b2 of 1", "b2: b1 of 1",                    //
+                                       "b1: b2 of 2", "b2: b1 b3 of 2", "b3: b2 of 2",  //
+                                       "b1: of 1", "b3: of 1"}));
+}
+
+TEST(BehaviorNeighbors, MistakesAreExplained) {
+  const auto error = [](const std::string& step) {
+    BehaviorStage stage;
+    stage.write("behaviors_lua/test.lua", group(step));
+    EXPECT_EQ(stage.play(row_of_balls(1), 1), "");
+    return first_line(stage.world.find_body("b1")->find_behavior("swarm")->error());
+  };
+  const std::string at = "behaviors_lua/test.lua:2: ";
+  EXPECT_EQ(error("self:neighbors(3, 1)"), at + "behavior 'b1/swarm': neighbors are those of a part, not of 3");
+  EXPECT_EQ(error("self:neighbors(self.body, 1)"),
+            at + "behavior 'b1/swarm': neighbors are those of a part, not of body 'b1'");
+  EXPECT_EQ(error("self:neighbors(self.parts[1])"), at + "neighbors: the radius takes a number, not nothing");
+  EXPECT_EQ(error("self:neighbors(self.parts[1], 0/0)"), at + "neighbors: the radius takes a finite number, not nan");
+  EXPECT_EQ(error("self.neighbors(self.parts[1], 1)"),
+            at + "neighbors is a method of a behavior: write it with a colon, behavior:neighbors(…), not with a dot");
+  EXPECT_EQ(step_says("self:neighbors(self.parts[1], 1)").substr(0, 72),
+            "behaviors_lua/test.lua:2: behavior 'ball/it' has no property 'neighbors'")
+      << "one that is no group's member sees nobody";
+}
+
+}  // namespace
+}  // namespace limber

@@ -1,0 +1,157 @@
+// Hostile behaviours: whatever one does, it alone is suspended, what it had written is taken back, and its neighbours
+// move as if it had been switched off in that tick.
+#include <gtest/gtest.h>
+
+#include "behavior_stage.h"
+
+namespace limber {
+namespace {
+
+struct Hostile {
+  const char* name;
+  const char* step;  // at tick 30; before, it pushes its own body
+  const char* said;  // the error has this
+  int line = 4;
+};
+
+std::ostream& operator<<(std::ostream& out, const Hostile& hostile) { return out << hostile.name; }
+
+constexpr Hostile kHostile[] = {
+    {"Errs", "local x = nil + 1", "attempt to perform arithmetic on a nil value"},
+    {"ThrowsATable", "error({})", "an error that is no text but a table"},
+    {"LoopsForEver", "while true do end", "stopped after 4 ms"},
+    {"LoopsOverParts", "while true do for _, part in ipairs(self.parts) do part:apply_force(vec3(1, 0, 0)) end end",
+     "stopped after 4 ms"},
+    {"CatchesItsStop", "pcall(function() while true do end end) while true do pcall(error) end", "stopped after 4 ms"},
+    {"EatsMemory", "local t = {} while true do t[#t + 1] = ('x'):rep(1000) .. #t end", "stopped"},
+    // no stack is left to look where: it names the function that was called
+    {"RecursesForEver", "local function f() return 1 + f() end f()", "stack overflow", 1},
+    {"WritesOthers",
+     "local other = sim:body('healthy') other.position = vec3(9, 9, 9) other.root.mass = 50 "
+     "other.root:apply_force(vec3(100, 0, 0)) other.root:apply_impulse(vec3(5, 0, 0)) "
+     "other:behavior('it').max_amp = 7 sim.gravity = vec3(0, 0, 5) error('done')",
+     "done"},
+    {"ResetsOthers", "sim:body('healthy'):reset() sim:reset() error('done')", "done"},
+    {"RemovesOthers", "sim:body('healthy'):remove() error('done')", "done"},
+    {"RemovesOthersBehaviors", "sim:body('healthy'):behavior('it'):remove() error('done')", "done"},
+    {"RemovesItsGroup", "sim:group_behavior('bad'):remove() error('done')", "done"},
+    {"RemovesAllThatItCan",
+     "for _, body in ipairs(sim.bodies) do for _, b in ipairs(body.behaviors) do b:remove() end body:remove() end "
+     "error('done')",
+     "done"},
+    {"RemovesItself", "self.body:behavior(self.name):remove() error('done')", "done"},
+    {"RemovesItsBody", "self.body:remove() error('done')", "done"},
+    {"SwitchesItselfOff", "self.active = false error('done')", "done"},
+    {"WritesNaN", "self.parts[1]:apply_force(vec3(0 / 0, 0, 0))", "takes finite numbers, not nan"},
+    {"MakesThings", "sim:add_body('more')", "makes or registers something"},
+    {"SpoilsLists", "local _, list = ipairs(self.parts) list[1] = 3", "can't be changed by hand"},
+    {"SpoilsNeighbors", "local f, walk = self:neighbors(self.parts[1], 5) walk.at = 7", "has no member named"},
+    {"CallsAWalkAnew",
+     "local f, walk = self:neighbors(self.parts[1], 5) for i = 1, 100 do f(walk) end "
+     "for i = 1, 17 do self:neighbors(self.parts[1], 5) end f(walk)",
+     "more than 16 inside each other"},
+    {"SpoilsItsSelf", "self.slot_ = 3", "this member never changes"},
+    {"ForgesASelf", "self.due({ slot_ = 1e9, generation_ = 1 }, 'push')", "due is a method of a behavior"},
+    {"AsksForTooManyDraws", "while true do self.rng:uniform() end", "stopped after 4 ms"},
+};
+
+// a group of one kind on two bodies beside which a healthy body is pushed about by a built-in behaviour
+std::string scene() {
+  return R"(
+local ball = sim:add_sphere_shape("ball", 0.1)
+for i, name in ipairs { "healthy", "bad", "other" } do
+  sim:add_body(name):add_part("ball", ball, { position = vec3(2 * i, 0, 1) })
+end
+sim.gravity = vec3()
+sim:body("healthy"):add_behavior("random_force", "it", { rand_interval = 50 })
+sim:add_group_behavior("test", "bad", { bodies = { "bad", "other" } })
+sim:body("other"):behavior("bad").hostile = false
+)";
+}
+
+std::string file(const Hostile& hostile) {
+  return "return behavior { group = true, params = { { 'push', 1, unit = 'ms' }, { 'hostile', true } }, step = "
+         "function(self)\n"
+         "if self.hostile and sim.tick >= 30 then\n"
+         "  self.parts[1]:apply_force(vec3(7, 0, 0))\n" +
+         std::string(hostile.step) +
+         "\nend\n"
+         "self.parts[1]:apply_force(self.rng:direction())\n"
+         "end }";
+}
+
+std::uint64_t hash_of(const Stage& stage, const char* body) {
+  return stage.world.find_body(body)->state_hash(hash_bytes("test"));
+}
+
+class HostileBehaviors : public ::testing::TestWithParam<Hostile> {};
+
+TEST_P(HostileBehaviors, AreSuspendedAloneAndLeaveNoTrace) {
+  const Hostile& hostile = GetParam();
+  SceneOptions options;
+  options.limits.call_ms = 4 * kBudgetScale;
+  options.limits.memory = std::size_t{24} << 20u;
+  std::vector<std::uint64_t> hashes;
+  for (const bool acts : {true, false}) {
+    BehaviorStage stage(options, true);
+    stage.write("behaviors_lua/test.lua", file(hostile));
+    ASSERT_EQ(stage.play(scene(), 30), "");
+    Behavior& bad = *stage.world.find_body("bad")->find_behavior("bad");
+    EXPECT_EQ(bad.error(), "");
+    if (!acts) {
+      const double off = 0;
+      ASSERT_TRUE(stage.store.set(bad.id(), "active", {&off, 1}).ok());
+    }
+    stage.tick(30);
+    if (acts) {
+      EXPECT_NE(bad.error().find(hostile.said), std::string::npos) << bad.error();
+      EXPECT_EQ(bad.fault().file, "behaviors_lua/test.lua");
+      EXPECT_EQ(bad.fault().line, hostile.line);
+      EXPECT_TRUE(bad.active());
+      EXPECT_EQ(stage.host.resets, 0);
+    }
+    EXPECT_EQ(stage.world.find_body("other")->find_behavior("bad")->error(), "");
+    hashes.push_back(hash_of(stage, "healthy"));
+    hashes.push_back(hash_of(stage, "other"));
+    const Part& part = *stage.world.find_body("bad")->root();
+    hashes.push_back(hash_bytes({reinterpret_cast<const char*>(stage.store.live_block(part.id())),
+                                 Part::table().live_width() * sizeof(double)}));
+  }
+  EXPECT_EQ(hashes[0], hashes[3]) << "the healthy body";
+  EXPECT_EQ(hashes[1], hashes[4]) << "the other member";
+  EXPECT_EQ(hashes[2], hashes[5]) << "its own part";
+}
+
+INSTANTIATE_TEST_SUITE_P(, HostileBehaviors, ::testing::ValuesIn(kHostile),
+                         [](const auto& info) { return std::string(info.param.name); });
+
+TEST(HostileBehaviorsInStart, AreSuspendedAloneToo) {
+  SceneOptions options;
+  options.limits.call_ms = 4 * kBudgetScale;
+  BehaviorStage stage(options);
+  stage.write("behaviors_lua/test.lua",
+              "return behavior { start = function(self)\n"
+              "  self.parts[1]:apply_force(vec3(0, 50, 0))\n"
+              "  while true do end\n"
+              "end, step = function() print('step') end }");
+  stage.write("behaviors_lua/good.lua",
+              "return behavior { step = function(self) self.parts[1]:apply_force(vec3(1, 0, 0)) end }");
+  ASSERT_EQ(stage.play(std::string(kBall) + "ball:add_behavior('test', 'it') ball:add_behavior('good', 'good')", 5),
+            "");
+  EXPECT_EQ(stage.it().fault().line, 3);
+  EXPECT_TRUE(stage.host.printed.empty());
+  const Vec3 velocity = stage.world.find_body("ball")->root()->linear_velocity();
+  EXPECT_NEAR(velocity.x, 5.0 / 60 / 2, 1e-6);
+  EXPECT_EQ(velocity.y, 0);
+}
+
+TEST(HostileBehaviorsAtLoad, RefuseTheScene) {
+  SceneOptions options;
+  options.limits.run_ms = 30 * kBudgetScale;
+  BehaviorStage stage(options);
+  const std::string fault = stage.play_one("while true do end");
+  EXPECT_EQ(fault.find("behaviors_lua/test.lua:1: stopped after 0.03 s"), 0u) << fault;
+}
+
+}  // namespace
+}  // namespace limber
