@@ -1,4 +1,7 @@
 -- Values: vec3, quat, and the three booleans of a flags row. Copies that never change.
+-- What a loop over many parts calls returns (f(x)), in parentheses, here and in the files after: LuaJIT's compiler counts
+-- a tail call as a turn of a loop and gives a trace up after fifteen. Without the parentheses lua_rotation_target was
+-- interpreted, and stopped for its time; lua_alignment took more than twice as long.
 local P = ...
 local ffi, fail, describe = P.ffi, P.fail, P.describe
 local istype, format, sqrt = ffi.istype, string.format, math.sqrt
@@ -11,7 +14,7 @@ local function as_vec3(v)
   if istype(V, v) then return v end
   if type(v) == "table" and #v == 3 then
     local x, y, z = v[1], v[2], v[3]
-    if type(x) == "number" and type(y) == "number" and type(z) == "number" then return V(x, y, z) end
+    if type(x) == "number" and type(y) == "number" and type(z) == "number" then return (V(x, y, z)) end
   end
 end
 P.as_vec3 = as_vec3
@@ -49,8 +52,8 @@ local function operands(a, b, what)
   return u, v
 end
 
-local function length(v) return sqrt(v.x * v.x + v.y * v.y + v.z * v.z) end
-local function cross(a, b) return V(a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x) end
+local function length(v) return (sqrt(v.x * v.x + v.y * v.y + v.z * v.z)) end
+local function cross(a, b) return (V(a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x)) end
 
 -- members of values by the name of their kind, for texts that list them
 P.value_members = {
@@ -59,21 +62,21 @@ P.value_members = {
 }
 
 local vec3_methods = {}
-function vec3_methods.length(v) return length(want_vec3(v, "vec3:length")) end
+function vec3_methods.length(v) return (length(want_vec3(v, "vec3:length"))) end
 function vec3_methods.normalized(v)
   v = want_vec3(v, "vec3:normalized")
   local n = length(v)
-  if n > 0 then return V(v.x / n, v.y / n, v.z / n) end
-  return V(0, 0, 0)
+  if n > 0 then return (V(v.x / n, v.y / n, v.z / n)) end
+  return (V(0, 0, 0))
 end
 function vec3_methods.dot(a, b)
   a, b = want_vec3(a, "vec3:dot"), want_vec3(b, "vec3:dot")
   return a.x * b.x + a.y * b.y + a.z * b.z
 end
-function vec3_methods.cross(a, b) return cross(want_vec3(a, "vec3:cross"), want_vec3(b, "vec3:cross")) end
+function vec3_methods.cross(a, b) return (cross(want_vec3(a, "vec3:cross"), want_vec3(b, "vec3:cross"))) end
 function vec3_methods.lerp(a, b, t)
   a, b, t = want_vec3(a, "vec3:lerp"), want_vec3(b, "vec3:lerp"), P.want_number(t, "vec3:lerp")
-  return V(a.x + (b.x - a.x) * t, a.y + (b.y - a.y) * t, a.z + (b.z - a.z) * t)
+  return (V(a.x + (b.x - a.x) * t, a.y + (b.y - a.y) * t, a.z + (b.z - a.z) * t))
 end
 setmetatable(vec3_methods, { __index = unknown_member("vec3", P.value_members.vec3) })
 
@@ -83,24 +86,24 @@ ffi.metatype(V, {
   __call = no_call("vec3"),
   __add = function(a, b)
     if not (istype(V, a) and istype(V, b)) then a, b = operands(a, b, "add") end
-    return V(a.x + b.x, a.y + b.y, a.z + b.z)
+    return (V(a.x + b.x, a.y + b.y, a.z + b.z))
   end,
   __sub = function(a, b)
     if not (istype(V, a) and istype(V, b)) then a, b = operands(a, b, "subtract") end
-    return V(a.x - b.x, a.y - b.y, a.z - b.z)
+    return (V(a.x - b.x, a.y - b.y, a.z - b.z))
   end,
   __mul = function(a, b)
-    if type(b) == "number" then return V(a.x * b, a.y * b, a.z * b) end
-    if type(a) == "number" then return V(a * b.x, a * b.y, a * b.z) end
+    if type(b) == "number" then return (V(a.x * b, a.y * b, a.z * b)) end
+    if type(a) == "number" then return (V(a * b.x, a * b.y, a * b.z)) end
     if not (istype(V, a) and istype(V, b)) then a, b = operands(a, b, "multiply") end
-    return V(a.x * b.x, a.y * b.y, a.z * b.z)
+    return (V(a.x * b.x, a.y * b.y, a.z * b.z))
   end,
   __div = function(a, b)
-    if type(b) == "number" and istype(V, a) then return V(a.x / b, a.y / b, a.z / b) end
+    if type(b) == "number" and istype(V, a) then return (V(a.x / b, a.y / b, a.z / b)) end
     if not (istype(V, a) and istype(V, b)) then a, b = operands(a, b, "divide") end
-    return V(a.x / b.x, a.y / b.y, a.z / b.z)
+    return (V(a.x / b.x, a.y / b.y, a.z / b.z))
   end,
-  __unm = function(a) return V(-a.x, -a.y, -a.z) end,
+  __unm = function(a) return (V(-a.x, -a.y, -a.z)) end,
   __eq = function(a, b)
     return istype(V, a) and istype(V, b) and a.x == b.x and a.y == b.y and a.z == b.z
   end,
@@ -112,7 +115,7 @@ function P.vec3(x, y, z)
   if (x and type(x) ~= "number") or (y and type(y) ~= "number") or (z and type(z) ~= "number") then
     fail("vec3 takes three numbers, not %s, %s, %s", describe(x), describe(y), describe(z))
   end
-  return V(x or 0, y or 0, z or 0)
+  return (V(x or 0, y or 0, z or 0))
 end
 
 local function rotate(q, v)
@@ -127,7 +130,7 @@ function quat_methods.inverse(q)
   q = want_quat(q, "quat:inverse")
   local n = q.x * q.x + q.y * q.y + q.z * q.z + q.w * q.w
   if n == 0 then fail("quat(0, 0, 0, 0) is no rotation and has no inverse") end
-  return Q(-q.x / n, -q.y / n, -q.z / n, q.w / n)
+  return (Q(-q.x / n, -q.y / n, -q.z / n, q.w / n))
 end
 function quat_methods.slerp(a, b, t)
   a, b, t = want_quat(a, "quat:slerp"), want_quat(b, "quat:slerp"), P.want_number(t, "quat:slerp")
@@ -141,7 +144,7 @@ function quat_methods.slerp(a, b, t)
   s = s * sign
   local x, y, z, w = p * a.x + s * b.x, p * a.y + s * b.y, p * a.z + s * b.z, p * a.w + s * b.w
   local n = sqrt(x * x + y * y + z * z + w * w)
-  return Q(x / n, y / n, z / n, w / n)
+  return (Q(x / n, y / n, z / n, w / n))
 end
 setmetatable(quat_methods, { __index = unknown_member("quat", P.value_members.quat) })
 
@@ -156,9 +159,9 @@ ffi.metatype(Q, {
   __call = no_call("quat"),
   __mul = function(a, b)
     if istype(Q, a) then
-      if istype(Q, b) then return multiply(a, b) end
+      if istype(Q, b) then return (multiply(a, b)) end
       local v = as_vec3(b)
-      if v then return rotate(a, v) end
+      if v then return (rotate(a, v)) end
     end
     fail("can't multiply %s and %s; a quat turns what stands on its right", describe(a), describe(b))
   end,
@@ -169,11 +172,11 @@ ffi.metatype(Q, {
 })
 
 local function quat(_, x, y, z, w)
-  if x == nil and y == nil and z == nil and w == nil then return Q(0, 0, 0, 1) end
+  if x == nil and y == nil and z == nil and w == nil then return (Q(0, 0, 0, 1)) end
   if type(x) ~= "number" or type(y) ~= "number" or type(z) ~= "number" or type(w) ~= "number" then
     fail("quat takes four numbers x, y, z, w, or none")
   end
-  return Q(x, y, z, w)
+  return (Q(x, y, z, w))
 end
 
 local function axis(direction, angle)
@@ -181,7 +184,7 @@ local function axis(direction, angle)
   local n, half = length(v), P.want_number(angle, "quat.axis") / 2
   if n == 0 then fail("quat.axis: the axis must not be zero") end
   local s = math.sin(half) / n
-  return Q(v.x * s, v.y * s, v.z * s, math.cos(half))
+  return (Q(v.x * s, v.y * s, v.z * s, math.cos(half)))
 end
 
 local function half_angle(angle)
@@ -192,7 +195,7 @@ local function euler(x, y, z)
   local sx, cx = half_angle(x)
   local sy, cy = half_angle(y)
   local sz, cz = half_angle(z)
-  return multiply(Q(0, 0, sz, cz), multiply(Q(0, sy, 0, cy), Q(sx, 0, 0, cx)))
+  return (multiply(Q(0, 0, sz, cz), multiply(Q(0, sy, 0, cy), Q(sx, 0, 0, cx))))
 end
 
 -- each environment gets a table of its own, so that nobody spoils another's

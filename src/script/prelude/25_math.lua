@@ -40,7 +40,7 @@ function P.rgb(r, g, b)
     elseif high == g then hue = (b - r) / span + 2
     else hue = (r - g) / span + 4 end
   end
-  return V(hue / 6, high > 0 and span / high or 0, high)
+  return (V(hue / 6, high > 0 and span / high or 0, high))
 end
 
 local R = ffi.typeof("rng")
@@ -50,7 +50,7 @@ local function check(self, what)
   if not istype(R, self) then fail("rng.%s is a method: write rng:%s(…)", what, what) end
 end
 local function wide(v)
-  if type(v) == "number" then return V(v, v, v) end
+  if type(v) == "number" then return (V(v, v, v)) end
   return P.want_vec3(v, "rng:uniform")
 end
 function methods.uniform(self, a, b)
@@ -60,12 +60,12 @@ function methods.uniform(self, a, b)
   if type(a) == "number" and type(b) == "number" then return a + (b - a) * api.random_uniform(ctx, self.slot_, self.generation_) end
   local lo, hi = wide(a), wide(b)
   local x, y = api.random_uniform(ctx, self.slot_, self.generation_), api.random_uniform(ctx, self.slot_, self.generation_)
-  return V(lo.x + (hi.x - lo.x) * x, lo.y + (hi.y - lo.y) * y, lo.z + (hi.z - lo.z) * api.random_uniform(ctx, self.slot_, self.generation_))
+  return (V(lo.x + (hi.x - lo.x) * x, lo.y + (hi.y - lo.y) * y, lo.z + (hi.z - lo.z) * api.random_uniform(ctx, self.slot_, self.generation_)))
 end
 function methods.direction(self)
   check(self, "direction")
   api.random_direction(ctx, self.slot_, self.generation_)
-  return V(answer.number[0], answer.number[1], answer.number[2])
+  return (V(answer.number[0], answer.number[1], answer.number[2]))
 end
 function methods.normal(self)
   check(self, "normal")

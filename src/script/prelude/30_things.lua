@@ -55,7 +55,7 @@ P.thing = thing
 -- the handle of the last answer, nil when it named nothing
 function P.answered()
   if answer.count == 0 then return nil end
-  return thing(answer.slot, answer.generation)
+  return (thing(answer.slot, answer.generation))
 end
 
 -- another class of handles; what one of its handles is called, and whose it is
@@ -111,11 +111,11 @@ local function getter_of(row)
   local offset, live, choices, kind = row.offset, row.live, row.choices, row.type
   local make
   if kind == kVec3 then
-    make = function(v, i) return V(v[i], v[i + 1], v[i + 2]) end
+    make = function(v, i) return (V(v[i], v[i + 1], v[i + 2])) end
   elseif kind == kQuat then
-    make = function(v, i) return Q(v[i], v[i + 1], v[i + 2], v[i + 3]) end
+    make = function(v, i) return (Q(v[i], v[i + 1], v[i + 2], v[i + 3])) end
   elseif kind == kFlags3 then
-    make = function(v, i) return F(v[i] ~= 0, v[i + 1] ~= 0, v[i + 2] ~= 0) end
+    make = function(v, i) return (F(v[i] ~= 0, v[i + 1] ~= 0, v[i + 2] ~= 0)) end
   elseif kind == kBoolean then
     make = function(v, i) return v[i] ~= 0 end
   elseif kind == kChoice then
@@ -127,11 +127,11 @@ local function getter_of(row)
     local index = row.index
     return function(h)
       if api.get(ctx, h.slot_, h.generation_, index) ~= 0 then gone(h) end
-      return make(answer.number, 0)
+      return (make(answer.number, 0))
     end
   end
-  if live then return function(h) return make(view.live, slot_of(h).live + offset) end end
-  return function(h) return make(view.kept, slot_of(h).kept + offset) end
+  if live then return function(h) return (make(view.live, slot_of(h).live + offset)) end end
+  return function(h) return (make(view.kept, slot_of(h).kept + offset)) end
 end
 
 local function refuse(h, row, value, takes)

@@ -32,7 +32,7 @@ local function entry_of(list)
   local entry = entries[list.kind_][list.slot_]
   if entry.version == api.structure(ctx) and entry.generation == list.generation_ then return entry end
   if entry.generation ~= list.generation_ then fail("the body of this list no longer exists") end
-  return gather(list, entry)
+  return (gather(list, entry))
 end
 
 local function items_of(list) return entry_of(list).items end
@@ -74,7 +74,7 @@ function P.find_in(owner, kind, key)
   if type(key) == "string" then
     local code = api.find(ctx, owner.slot_, owner.generation_, kind, key, #key)
     if code ~= 0 then P.check(code, P.gone, owner) end
-    return thing(answer.slot, answer.generation)
+    return (thing(answer.slot, answer.generation))
   end
   if type(key) == "number" then
     local items = items_of(P.list_of(owner, kind))
@@ -174,7 +174,8 @@ ffi.metatype(L, {
 -- ipairs for lists and flags too
 local native_ipairs = ipairs
 function P.ipairs(t)
-  if istype(L, t) then return native_ipairs(items_of(t)) end
+  if istype(L, t) then t = items_of(t) end
   if istype(P.F, t) then return native_ipairs { t.x, t.y, t.z } end
-  return native_ipairs(t)
+  local f, s, i = native_ipairs(t)
+  return f, s, i
 end

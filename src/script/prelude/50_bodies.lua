@@ -14,15 +14,15 @@ end
 local function related(which)
   return function(h)
     if api.related(ctx, h.slot_, h.generation_, which) ~= 0 then P.gone(h) end
-    return P.answered()
+    return (P.answered())
   end
 end
 local function owner(h)
   P.slot_of(h)
   api.owner(ctx, h.slot_, h.generation_)
-  return P.answered()
+  return (P.answered())
 end
-local function list(kind) return function(h) return P.list_of(h, kind) end end
+local function list(kind) return function(h) return (P.list_of(h, kind)) end end
 
 P.owner_of = owner
 for _, class in ipairs { part, joint, motor } do class.getters.body = owner end
@@ -46,7 +46,7 @@ end
 for name, kind in pairs { part = parts, joint = joints, motor = motors } do
   body.methods[name] = function(h, key)
     if not istype(body.ctype, h) then P.check_self(h, body, name) end
-    return P.find_in(h, kind, key)
+    return (P.find_in(h, kind, key))
   end
 end
 
@@ -76,7 +76,7 @@ function P.pose_of(opts, what, missing)
   return pose
 end
 
-local function shape_named(key) return P.find_in(P.sim, shapes, key) end
+local function shape_named(key) return (P.find_in(P.sim, shapes, key)) end
 
 local part_own = { mass = true, position = true, rotation = true }
 method(body, "add_part", function(h, name, of_shape, opts)

@@ -18,7 +18,7 @@ local function error_text(h)
   return nil
 end
 
-local function list(kind) return function(h) return P.list_of(h, kind) end end
+local function list(kind) return function(h) return (P.list_of(h, kind)) end end
 
 -- the class of a table's number: of a type's instances, or of its groups
 function P.make_class(number)
@@ -95,7 +95,7 @@ end
 body.getters.behaviors = list(behaviors)
 body.methods.behavior = function(h, key)
   P.check_self(h, body, "behavior")
-  return P.find_in(h, behaviors, key)
+  return (P.find_in(h, behaviors, key))
 end
 
 local group_own = { bodies = true, parts = true, neighbor_parts = true }
@@ -116,5 +116,5 @@ sim.methods.add_group_behavior = function(h, kind, name, opts)
 end
 sim.methods.group_behavior = function(h, key)
   P.check_self(h, sim, "group_behavior")
-  return P.find_in(h, groups, key)
+  return (P.find_in(h, groups, key))
 end
