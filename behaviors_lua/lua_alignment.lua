@@ -1,31 +1,50 @@
--- The built-in `alignment`, written in Lua: each part moves and turns as its neighbours do.
+-- The built-in `alignment`, written in Lua: gives each part the motion of its neighbours in other bodies.
+
+-- a gain that within a tick brings an inertia to the mean and no further: what is more would overshoot, and grow
+local function bounded(gain, inertia, dt) return math.clamp(gain, -inertia / dt, inertia / dt) end
+
+-- about each principal axis by itself: a thin part takes less about its long axis than across
+local function bounded_torque(part, gain, spin, dt)
+  local inertia = part.inertia
+  if math.abs(gain) * dt <= math.min(inertia.x, inertia.y, inertia.z) then return spin * gain end
+  local axes = part.principal_axes
+  local own = axes:inverse() * spin
+  return axes * vec3(
+    own.x * bounded(gain, inertia.x, dt), own.y * bounded(gain, inertia.y, dt), own.z * bounded(gain, inertia.z, dt))
+end
+
 return behavior {
-  doc = "Brings each part to the mean velocity of near parts of other bodies. (The built-in alignment, written in Lua.)",
+  doc = "Gives each part the motion of its neighbours in other bodies. (The built-in alignment, written in Lua.)",
   group = true,
   params = {
-    { "min_dist", 0, min = 0, unit = "m", doc = "Nearer parts are left out." },
-    { "max_dist", 10, min = 0, unit = "m", doc = "Farther parts are left out." },
-    { "linear_amount", 1, unit = "N·s/m", doc = "Force for each m/s of difference." },
-    { "angular_amount", 1, unit = "N·m·s/rad", doc = "Torque for each rad/s of difference." },
-    { "amount", 1, doc = "Multiplies both." },
+    { "min_dist", 0, min = 0, max = 1e6, unit = "m", doc = "Neighbours are further away than this" },
+    { "max_dist", 10, min = 0, max = 1e6, unit = "m", doc = "and nearer than this." },
+    { "linear_amount", 1, min = -1e9, max = 1e9, unit = "N·s/m", doc = "Force for each m/s that differs; never more than ends the difference." },
+    { "angular_amount", 1, min = -1e9, max = 1e9, unit = "N·m·s/rad", doc = "Torque for each rad/s that differs; never more than ends the difference." },
+    { "amount", 1, min = -1e9, max = 1e9, doc = "What both are multiplied by; below 0: away from the neighbours' motion." },
   },
-  step = function(self)
-    local min, max = self.min_dist, self.max_dist
-    if max <= min then return end
+  step = function(self, dt)
+    local near, far = self.min_dist, self.max_dist
+    if far <= near then return end
     for _, part in ipairs(self.parts) do
-      local sum, linear, angular, n = vec3(), vec3(), vec3(), 0
-      for other, offset, distance in self:neighbors(part, max) do
-        if distance >= min then
-          n = n + 1
-          sum = sum + offset
-          linear = linear + other.linear_velocity
-          angular = angular + other.angular_velocity
+      -- summed as numbers: a vec3 that lives on from turn to turn would be made anew at each
+      local x, y, z, n = 0, 0, 0, 0
+      local vx, vy, vz, wx, wy, wz = 0, 0, 0, 0, 0, 0
+      for other, offset, distance in self:neighbors(part, far) do
+        if distance >= near then
+          local v, w = other.linear_velocity, other.angular_velocity
+          x, y, z, n = x + offset.x, y + offset.y, z + offset.z, n + 1
+          vx, vy, vz = vx + v.x, vy + v.y, vz + v.z
+          wx, wy, wz = wx + w.x, wy + w.y, wz + w.z
         end
       end
       if n > 0 then
-        local s = math.clamp(1 - ((sum / n):length() - min) / (max - min), 0, 1) * self.amount
-        part:apply_force((linear / n - part.linear_velocity) * (self.linear_amount * s))
-        part:apply_torque((angular / n - part.angular_velocity) * (self.angular_amount * s))
+        local way = vec3(x, y, z) / n
+        local s = self.amount * math.clamp(1 - (way:length() - near) / (far - near), 0, 1)
+        local velocity = vec3(vx, vy, vz) / n - part.linear_velocity
+        local spin = vec3(wx, wy, wz) / n - part.angular_velocity
+        part:apply_force(velocity * bounded(self.linear_amount * s, part.mass, dt))
+        part:apply_torque(bounded_torque(part, self.angular_amount * s, spin, dt))
       end
     end
   end,

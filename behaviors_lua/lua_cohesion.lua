@@ -1,27 +1,25 @@
--- The built-in `cohesion`, written in Lua: each part goes where its neighbours are.
+-- The built-in `cohesion`, written in Lua: draws each part towards the middle of its neighbours in other bodies.
 return behavior {
-  doc = "Pulls each part to the middle of near parts of other bodies. (The built-in cohesion, written in Lua.)",
+  doc = "Draws each part towards the middle of its neighbours in other bodies. (The built-in cohesion, written in Lua.)",
   group = true,
   params = {
-    { "min_dist", 0, min = 0, unit = "m", doc = "Nearer parts are left out." },
-    { "max_dist", 10, min = 0, unit = "m", doc = "Farther parts are left out." },
-    { "amount", 1, unit = "N", doc = "Force; negative: evades." },
+    { "min_dist", 0, min = 0, max = 1e6, unit = "m", doc = "Neighbours are further away than this" },
+    { "max_dist", 10, min = 0, max = 1e6, unit = "m", doc = "and nearer than this." },
+    { "amount", 1, min = -1e9, max = 1e9, unit = "N", doc = "Force; below 0: away from the neighbours." },
   },
   step = function(self)
-    local min, max, amount = self.min_dist, self.max_dist, self.amount
-    if max <= min then return end
+    local near, far, amount = self.min_dist, self.max_dist, self.amount
+    if far <= near then return end
     for _, part in ipairs(self.parts) do
-      local sum, n = vec3(), 0
-      for _, offset, distance in self:neighbors(part, max) do
-        if distance >= min then
-          n = n + 1
-          sum = sum + offset
-        end
+      -- summed as numbers: a vec3 that lives on from turn to turn would be made anew at each
+      local x, y, z, n = 0, 0, 0, 0
+      for _, offset, distance in self:neighbors(part, far) do
+        if distance >= near then x, y, z, n = x + offset.x, y + offset.y, z + offset.z, n + 1 end
       end
       if n > 0 then
-        local mean = sum / n
-        local s = min > 0 and math.clamp((mean:length() - min) / (max - min), 0, 1) or 1
-        part:apply_force(mean:normalized() * (amount * s))
+        local way = vec3(x, y, z) / n
+        local s = near > 0 and math.clamp((way:length() - near) / (far - near), 0, 1) or 1
+        part:apply_force(way:normalized() * (amount * s))
       end
     end
   end,

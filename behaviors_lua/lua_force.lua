@@ -1,11 +1,11 @@
--- The built-in `force`, written in Lua: one constant force on each part.
+-- The built-in `force`, written in Lua: pushes every part in one direction.
 return behavior {
-  doc = "A constant force on each part. (The built-in force, written in Lua.)",
+  doc = "Pushes every part in one direction. (The built-in force, written in Lua.)",
   params = {
-    { "dir", vec3(1, 0, 0), doc = "Direction of the force; its length does not matter." },
-    { "amp", 0, unit = "N", doc = "Strength; negative: against dir." },
-    { "max_amp", 1e4, min = 0, unit = "N", doc = "The strength never exceeds this." },
-    { "app_interval", 1, min = 0, unit = "ms", doc = "Simulated time between two applications." },
+    { "dir", vec3(1, 0, 0), min = -1e6, max = 1e6, doc = "Where to, world; its length does not matter." },
+    { "amp", 0, min = -1e9, max = 1e9, unit = "N", doc = "How hard; below 0: the other way." },
+    { "max_amp", 1e4, min = 0, max = 1e9, unit = "N", doc = "What amp is held below, either way." },
+    { "app_interval", 1, min = 0, max = 1e9, unit = "ms", doc = "Simulated time from one application to the next." },
   },
   step = function(self)
     if not self:due("app_interval") then return end

@@ -1,13 +1,14 @@
--- The built-in `random_force`, written in Lua: each part has a force of its own, drawn anew now and then.
+-- The built-in `random_force`, written in Lua: pushes each part in a direction of its own that is drawn anew from time
+-- to time.
 return behavior {
-  doc = "A random force on each part, drawn anew every rand_interval. (The built-in random_force, written in Lua.)",
+  doc = "Pushes each part in a direction of its own, drawn anew from time to time. (The built-in, written in Lua.)",
   params = {
-    { "min_dir", vec3(-1, -1, -1), doc = "A direction is drawn between min_dir and max_dir." },
-    { "max_dir", vec3(1, 1, 1), doc = "A direction is drawn between min_dir and max_dir." },
-    { "min_amp", 0, unit = "N", doc = "A strength is drawn between min_amp and max_amp." },
-    { "max_amp", 10, unit = "N", doc = "A strength is drawn between min_amp and max_amp." },
-    { "rand_interval", 1000, min = 0, unit = "ms", doc = "Simulated time between two draws." },
-    { "app_interval", 1, min = 0, unit = "ms", doc = "Simulated time between two applications." },
+    { "min_dir", vec3(-1, -1, -1), min = -1e6, max = 1e6, doc = "One corner of the box that directions are drawn from." },
+    { "max_dir", vec3(1, 1, 1), min = -1e6, max = 1e6, doc = "The other corner." },
+    { "min_amp", 0, min = -1e9, max = 1e9, unit = "N", doc = "The force is drawn from this" },
+    { "max_amp", 10, min = -1e9, max = 1e9, unit = "N", doc = "to this." },
+    { "rand_interval", 1000, min = 0, max = 1e9, unit = "ms", doc = "Simulated time from one random draw to the next." },
+    { "app_interval", 1, min = 0, max = 1e9, unit = "ms", doc = "Simulated time from one application to the next." },
   },
   start = function(self) self.state.forces = {} end,
   step = function(self)

@@ -1,14 +1,15 @@
--- The built-in `random_rotation_target`, written in Lua: motors turn towards angles that are drawn anew now and then.
+-- The built-in `random_rotation_target`, written in Lua: leads each servo and spring towards angles of its own that are
+-- drawn anew from time to time.
 local turn = require "turn"
 
 return behavior {
-  doc = "Turns each motor towards angles of its own, drawn every rand_interval. (The built-in, written in Lua.)",
+  doc = "Leads each servo and spring towards angles of its own, drawn anew from time to time. (The built-in, written in Lua.)",
   params = {
-    { "min_target", vec3(0, 0, 0), unit = "rad", doc = "Angles are drawn between min_target and max_target." },
-    { "max_target", vec3(0, 0, 0), unit = "rad", doc = "Angles are drawn between min_target and max_target." },
-    { "speed", 0.1, min = 0, unit = "rad", doc = "Largest step of an application." },
-    { "rand_interval", 1000, min = 0, unit = "ms", doc = "Simulated time between two draws." },
-    { "app_interval", 1, min = 0, unit = "ms", doc = "Simulated time between two applications." },
+    { "min_target", vec3(0, 0, 0), min = -1e4, max = 1e4, unit = "rad", doc = "Angles are drawn from these, about the joint's axes," },
+    { "max_target", vec3(0, 0, 0), min = -1e4, max = 1e4, unit = "rad", doc = "to these." },
+    { "speed", 0.1, min = 0, max = 1e4, unit = "rad", doc = "How far ahead of the joint the servo or spring is set, at each application." },
+    { "rand_interval", 1000, min = 0, max = 1e9, unit = "ms", doc = "Simulated time from one random draw to the next." },
+    { "app_interval", 1, min = 0, max = 1e9, unit = "ms", doc = "Simulated time from one application to the next." },
   },
   start = function(self) self.state.targets = {} end,
   step = function(self)
@@ -17,6 +18,7 @@ return behavior {
       for i in ipairs(self.motors) do targets[i] = self.rng:uniform(self.min_target, self.max_target) end
     end
     if not self:due("app_interval") then return end
-    for i, motor in ipairs(self.motors) do turn(motor, targets[i], self.speed) end
+    local speed = self.speed
+    for i, motor in ipairs(self.motors) do turn(motor, targets[i], speed) end
   end,
 }

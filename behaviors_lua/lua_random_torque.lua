@@ -1,12 +1,13 @@
--- The built-in `random_torque`, written in Lua: each part has a torque of its own, drawn anew now and then.
+-- The built-in `random_torque`, written in Lua: turns each part by a torque of its own that is drawn anew from time to
+-- time.
 return behavior {
-  doc = "A random torque on each part, drawn anew every rand_interval. (The built-in random_torque, written in Lua.)",
+  doc = "Turns each part by a torque of its own, drawn anew from time to time. (The built-in, written in Lua.)",
   params = {
-    { "min_torque", vec3(-1, -1, -1), unit = "N·m", doc = "A torque is drawn between min_torque and max_torque." },
-    { "max_torque", vec3(1, 1, 1), unit = "N·m", doc = "A torque is drawn between min_torque and max_torque." },
-    { "scale", 1, doc = "Multiplies what was drawn, at once." },
-    { "rand_interval", 1000, min = 0, unit = "ms", doc = "Simulated time between two draws." },
-    { "app_interval", 1, min = 0, unit = "ms", doc = "Simulated time between two applications." },
+    { "min_torque", vec3(-1, -1, -1), min = -1e9, max = 1e9, unit = "N·m", doc = "One corner of the box that torques are drawn from, world axes." },
+    { "max_torque", vec3(1, 1, 1), min = -1e9, max = 1e9, unit = "N·m", doc = "The other corner." },
+    { "scale", 1, min = -1e9, max = 1e9, doc = "What the torque is multiplied by; acts at once." },
+    { "rand_interval", 1000, min = 0, max = 1e9, unit = "ms", doc = "Simulated time from one random draw to the next." },
+    { "app_interval", 1, min = 0, max = 1e9, unit = "ms", doc = "Simulated time from one application to the next." },
   },
   start = function(self) self.state.torques = {} end,
   step = function(self)
@@ -15,6 +16,7 @@ return behavior {
       for i in ipairs(self.parts) do torques[i] = self.rng:uniform(self.min_torque, self.max_torque) end
     end
     if not self:due("app_interval") then return end
-    for i, part in ipairs(self.parts) do part:apply_torque(torques[i] * self.scale) end
+    local scale = self.scale
+    for i, part in ipairs(self.parts) do part:apply_torque(torques[i] * scale) end
   end,
 }

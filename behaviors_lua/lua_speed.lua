@@ -1,9 +1,9 @@
--- The built-in `speed`, written in Lua: what moves is led to one speed, what rests stays at rest.
+-- The built-in `speed`, written in Lua: drives each part to a speed, along the way that it goes.
 return behavior {
-  doc = "Accelerates or brakes each part along its own way, towards one speed. (The built-in speed, written in Lua.)",
+  doc = "Drives each part to a speed, along the way that it goes. (The built-in speed, written in Lua.)",
   params = {
-    { "speed", 1, unit = "m/s", doc = "The speed to reach." },
-    { "amount", 1, unit = "N·s/m", doc = "Force for each m/s that is missing." },
+    { "speed", 1, min = -1e4, max = 1e4, unit = "m/s", doc = "The speed to reach." },
+    { "amount", 1, min = -1e9, max = 1e9, unit = "N·s/m", doc = "Force for each m/s that is missing; below 0: away from that speed." },
   },
   step = function(self)
     for _, part in ipairs(self.parts) do

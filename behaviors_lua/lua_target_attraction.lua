@@ -1,22 +1,21 @@
--- The built-in `target_attraction`, written in Lua: parts are drawn to a point, more strongly from afar.
+-- The built-in `target_attraction`, written in Lua: pulls each part towards a point, more strongly from afar.
 return behavior {
-  doc = "Draws each part to a point, more strongly from afar. (The built-in target_attraction, written in Lua.)",
+  doc = "Pulls each part towards a point. (The built-in target_attraction, written in Lua.)",
   params = {
-    { "target_pos", vec3(0, 0, 0), unit = "m", doc = "The point, in the world." },
-    { "min_dist", 0, min = 0, unit = "m", doc = "Nearer than this nothing acts." },
-    { "max_dist", 10, min = 0, unit = "m", doc = "Beyond this nothing acts." },
-    { "min_amp", 0, unit = "N", doc = "Force at no distance; negative: away." },
-    { "max_amp", 10, unit = "N", doc = "Force at max_dist; negative: away." },
-    { "app_interval", 1, min = 0, unit = "ms", doc = "Simulated time between two applications." },
+    { "target_pos", vec3(0, 0, 0), min = -1e6, max = 1e6, unit = "m", doc = "The point, world." },
+    { "min_dist", 0, min = 0, max = 1e6, unit = "m", doc = "Nothing acts nearer than this" },
+    { "max_dist", 10, min = 0, max = 1e6, unit = "m", doc = "or further than this." },
+    { "min_amp", 0, min = -1e9, max = 1e9, unit = "N", doc = "Force close to the point; below 0: away from it." },
+    { "max_amp", 10, min = -1e9, max = 1e9, unit = "N", doc = "Force at max_dist." },
+    { "app_interval", 1, min = 0, max = 1e9, unit = "ms", doc = "Simulated time from one application to the next." },
   },
   step = function(self)
-    if not self:due("app_interval") or self.max_dist <= 0 then return end
+    if not self:due("app_interval") then return end
+    local target, near, far, from, to = self.target_pos, self.min_dist, self.max_dist, self.min_amp, self.max_amp
     for _, part in ipairs(self.parts) do
-      local r = self.target_pos - part.center
-      local d = r:length()
-      if d >= self.min_dist and d <= self.max_dist then
-        part:apply_force(r:normalized() * (self.min_amp + (self.max_amp - self.min_amp) * d / self.max_dist))
-      end
+      local way = target - part.center
+      local d = way:length()
+      if d > 0 and d >= near and d <= far then part:apply_force(way / d * (from + (to - from) * d / far)) end
     end
   end,
 }

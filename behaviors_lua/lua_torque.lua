@@ -1,10 +1,10 @@
--- The built-in `torque`, written in Lua: one constant torque on each part.
+-- The built-in `torque`, written in Lua: turns every part about one axis.
 return behavior {
-  doc = "A constant torque about the world's axes on each part. (The built-in torque, written in Lua.)",
+  doc = "Turns every part about one axis. (The built-in torque, written in Lua.)",
   params = {
-    { "torque", vec3(0, 0, 0), unit = "N·m", doc = "About the world's axes." },
-    { "scale", 1, doc = "Multiplies the torque." },
-    { "app_interval", 1, min = 0, unit = "ms", doc = "Simulated time between two applications." },
+    { "torque", vec3(0, 0, 0), min = -1e9, max = 1e9, unit = "N·m", doc = "About the world's axes." },
+    { "scale", 1, min = -1e9, max = 1e9, doc = "What torque is multiplied by." },
+    { "app_interval", 1, min = 0, max = 1e9, unit = "ms", doc = "Simulated time from one application to the next." },
   },
   step = function(self)
     if not self:due("app_interval") then return end

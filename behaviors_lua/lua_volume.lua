@@ -1,23 +1,24 @@
--- The built-in `volume`, written in Lua: parts two by two push each other apart, and so keep a body's volume.
+-- The built-in `volume`, written in Lua: pushes parts apart, two by two, so that a body keeps its volume. (The built-in
+-- pairs parts in the order in which the scene names them; here they come from root to tip.)
 return behavior {
-  doc = "Parts two by two push each other apart when they are near. (The built-in volume, written in Lua.)",
+  doc = "Pushes parts apart, two by two. (The built-in volume, written in Lua.)",
   params = {
-    { "max_dist", 1, min = 0, unit = "m", doc = "Beyond this nothing acts." },
-    { "min_amp", 0, unit = "N", doc = "Force at max_dist; negative: together." },
-    { "max_amp", 10, unit = "N", doc = "Force at no distance; negative: together." },
-    { "app_interval", 1, min = 0, unit = "ms", doc = "Simulated time between two applications." },
+    { "max_dist", 1, min = 0, max = 1e6, unit = "m", doc = "Nothing acts beyond this." },
+    { "min_amp", 0, min = -1e9, max = 1e9, unit = "N", doc = "Force at max_dist." },
+    { "max_amp", 10, min = -1e9, max = 1e9, unit = "N", doc = "Force close to each other; below 0: towards each other." },
+    { "app_interval", 1, min = 0, max = 1e9, unit = "ms", doc = "Simulated time from one application to the next." },
   },
   step = function(self)
-    if not self:due("app_interval") or self.max_dist <= 0 then return end
-    local parts = self.parts
+    if not self:due("app_interval") then return end
+    local parts, far, from, to = self.parts, self.max_dist, self.min_amp, self.max_amp
     for i = 1, #parts - 1, 2 do
       local first, second = parts[i], parts[i + 1]
-      local r = second.center - first.center
-      local d = r:length()
-      if d <= self.max_dist then
-        local push = r:normalized() * (self.min_amp + (self.max_amp - self.min_amp) * (1 - d / self.max_dist))
-        first:apply_force(-push)
-        second:apply_force(push)
+      local way = second.center - first.center
+      local d = way:length()
+      if d > 0 and d <= far then
+        local force = way / d * (from + (to - from) * (1 - d / far))
+        first:apply_force(-force)
+        second:apply_force(force)
       end
     end
   end,

@@ -6,34 +6,34 @@ local function wrap(angle)
   return angle - 2 * math.pi * math.ceil((angle - math.pi) / (2 * math.pi))
 end
 
-local function toward(angle, target, speed, free)
+-- where an axis is sent: on a free one the shorter way round; `old` where its mode does not fit
+local function toward(fits, old, angle, target, speed, free)
+  if not fits then return old end
   local way = target - angle
   if free then way = wrap(way) end
   return angle + math.clamp(way, -speed, speed)
 end
 
--- three numbers: what drives where its mode fits, else what stood there before
-local function pick(fits, new, old)
-  return vec3(fits[1] and new.x or old.x, fits[2] and new.y or old.y, fits[3] and new.z or old.z)
-end
-
 return function(motor, target, speed)
   local joint = motor.joint
   local angles, lower, upper = joint.angles, joint.angular_lower_limit, joint.angular_upper_limit
-  local new = vec3(
-    toward(angles.x, target.x, speed, lower.x > upper.x),
-    toward(angles.y, target.y, speed, lower.y > upper.y),
-    toward(angles.z, target.z, speed, lower.z > upper.z))
+  local free_x, free_y, free_z = lower.x > upper.x, lower.y > upper.y, lower.z > upper.z
   local active, servo, spring = motor.angular_active, motor.angular_servo_active, motor.angular_spring_active
-  local servos, springs = {}, {}
-  for axis = 1, 3 do
-    springs[axis] = spring[axis]
-    servos[axis] = active[axis] and servo[axis] and not spring[axis]
+  local x, y, z = spring.x, spring.y, spring.z
+  if x or y or z then
+    local old = motor.angular_spring_rest_length
+    motor.angular_spring_rest_length = vec3(
+      toward(x, old.x, angles.x, target.x, speed, free_x),
+      toward(y, old.y, angles.y, target.y, speed, free_y),
+      toward(z, old.z, angles.z, target.z, speed, free_z))
   end
-  if servos[1] or servos[2] or servos[3] then
-    motor.angular_servo_position = pick(servos, new, motor.angular_servo_position)
-  end
-  if springs[1] or springs[2] or springs[3] then
-    motor.angular_spring_rest_length = pick(springs, new, motor.angular_spring_rest_length)
+  -- what is a spring is no servo
+  x, y, z = active.x and servo.x and not x, active.y and servo.y and not y, active.z and servo.z and not z
+  if x or y or z then
+    local old = motor.angular_servo_position
+    motor.angular_servo_position = vec3(
+      toward(x, old.x, angles.x, target.x, speed, free_x),
+      toward(y, old.y, angles.y, target.y, speed, free_y),
+      toward(z, old.z, angles.z, target.z, speed, free_z))
   end
 end
