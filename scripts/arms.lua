@@ -1,5 +1,10 @@
--- Two rings of eight arms face each other, one standing, one hanging, and sway in slow waves that run round the rings.
--- Sliders: speed, depth, lag. From outside: /sway 1 lets a gust go through all arms, /sway 1 "arm3" through one.
+-- Two rings of eight arms face each other, one standing, one hanging, and breathe in slow waves that run round the rings.
+-- Sliders: rate, depth, lag. From outside: /sway 1 lets a gust go through all arms, /sway 1 "arm3" through one.
+--
+-- Each arm has 21 more behaviours that wait to be switched on, alone or together:
+--   /physics/body/arm3/behavior/thrusting/active 1       one arm
+--   /physics/body/*/behavior/staccato/active 1           all arms
+--   /physics/group/cohesion/active 1                     all tips together
 
 local kArms = 8 -- in each ring
 local kRadius = 2.5 -- m
@@ -8,53 +13,95 @@ local kHeight = 5 -- m, of the upper ring
 sim.gravity = vec3(0, 0, -9.81)
 
 params {
-  { "speed", 0.12, min = 0, max = 1, unit = "Hz", doc = "Waves per second." },
+  { "rate", 0.12, min = 0, max = 1, unit = "Hz", doc = "Breaths per second, of all arms." },
   { "depth", 0.6, min = 0, max = 1.2, unit = "rad", doc = "How far the joints bend." },
   { "lag", 0.6, min = 0, max = 3.14, unit = "rad", doc = "How much later than the one below a joint bends." },
 }
 
--- one arm from its file; the others are copies, each turned to face outwards
+-- one arm from its file; its copies take over all that is said about it up to there
+local first = sim:load_urdf("urdf/arm6.urdf", { name = "arm1" })
+local tip = first:part("tip")
+
+-- even joints bend the arm, odd ones twist it: half as fast, half as far
+first:add_behavior("breathe", "bend", { motors = "joint_[246]" })
+first:add_behavior("breathe", "twist", { motors = "joint_[135]" })
+
+local function add(type, name, opts)
+  opts.active = false
+  first:add_behavior(type, name, opts)
+end
+-- a push of 1 N, another way every 5 s
+local function pushing(parts) return { parts = parts, min_amp = 1, max_amp = 1, rand_interval = 5000 } end
+add("random_force", "random_tip", pushing(tip))
+add("random_force", "random_all", pushing("all"))
+add("force", "force_tip", { parts = tip, dir = vec3(1, 0, 0), amp = 1 })
+for i, motor in ipairs(first.motors) do
+  add("rotation_target", "rotation_" .. i - 1, { motors = motor, speed = 1.4 })
+end
+add("speed", "speed_tip", { parts = tip })
+add("speed", "speed_all", {})
+add("target_attraction", "targetpos_tip", { parts = tip, target_pos = vec3(0, 2, 0), max_amp = 1 })
+add("target_attraction", "targetpos_all", { target_pos = vec3(0, 2, 0), max_amp = 1 })
+add("random_force", "levitation", pushing(tip))
+add("random_force", "particles", pushing(tip))
+-- joints go where chance wants them, 1.4 rad either way
+local function drawn(motors, speed, interval)
+  return { motors = motors, min_target = vec3(0, 0, -1.4), max_target = vec3(0, 0, 1.4), speed = speed,
+    rand_interval = interval }
+end
+add("random_rotation_target", "thrusting", drawn({ "joint_1", "joint_2" }, 1.4, 2000))
+add("random_rotation_target", "staccato", drawn("all", 1.4, 2000))
+add("random_rotation_target", "fluidity", drawn("all", 0.1, 1000))
+
+-- the rings: each arm faces outwards, a place further on it is a little later
 local arms = {}
-local function add_arm(name, angle, height, up)
+for i = 1, 2 * kArms do
+  local place, up = (i - 1) % kArms, i <= kArms
+  local angle = -math.pi / 2 + 2 * math.pi * place / kArms
   local pose = {
-    position = vec3(kRadius * math.cos(angle), kRadius * math.sin(angle), height),
+    position = vec3(kRadius * math.cos(angle), kRadius * math.sin(angle), up and 0 or kHeight),
     rotation = quat.euler(up and 0 or math.pi, 0, angle - math.pi / 2),
   }
-  if arms[1] then
-    return arms[1].body:copy(name, pose)
+  local body = first
+  if i == 1 then
+    first.position, first.rotation = pose.position, pose.rotation
+  else
+    body = first:copy("arm" .. i, pose)
   end
-  pose.name = name
-  return sim:load_urdf("urdf/arm6.urdf", pose)
-end
-
-for i = 1, 2 * kArms do
-  local place = (i - 1) % kArms
-  local angle = -math.pi / 2 + 2 * math.pi * place / kArms
-  local up = i <= kArms
-  local body = add_arm("arm" .. i, angle, up and 0 or kHeight, up)
+  local bend, twist = body:behavior("bend"), body:behavior("twist")
   -- turned over, an arm leans the other way; half a wave later, the upper ring follows the lower one
-  arms[i] = { body = body, phase = 2 * math.pi * place / kArms + (up and 0 or math.pi), gust = 0 }
+  bend.offset = 2 * math.pi * place / kArms + (up and 0 or math.pi) - math.pi
+  twist.offset = bend.offset
+  arms[i] = { body = body, bend = bend, twist = twist, gust = 0 }
 end
 
--- odd joints twist, even ones bend; every joint follows the same wave, a little later than the one below
-local function sway(arm, time, dt)
-  local depth = math.min(params.depth * (1 + arm.gust), 1.3)
-  local lag = params.lag
-  for i, motor in ipairs(arm.body.motors) do
-    if i % 2 == 1 then
-      motor.target = 0.6 * depth * math.sin(0.5 * time - arm.phase - 0.4 * i)
-    else
-      motor.target = depth * (0.1 + (0.5 + 0.1 * i) * math.sin(time - arm.phase - lag * i / 2))
+-- what the tips do together
+local function gather(type, name, opts)
+  opts.active, opts.bodies, opts.parts = false, "arm*", "tip"
+  sim:add_group_behavior(type, name, opts)
+end
+gather("cohesion", "cohesion", {})
+gather("cohesion", "evasion", { amount = -1 })
+gather("alignment", "alignment", {})
+
+-- a slider that moves sets all arms; what one arm is told by itself stays until then
+state.told = state.told or {}
+local function tell(name, value, twist)
+  if state.told[name] == value then return end
+  state.told[name] = value
+  for _, arm in ipairs(arms) do arm.bend[name], arm.twist[name] = value, value * twist end
+end
+
+sim:on_step(function(dt)
+  tell("rate", params.rate, 0.5)
+  tell("depth", params.depth, 0.6)
+  tell("lag", params.lag, 0.6)
+  for _, arm in ipairs(arms) do
+    if arm.gust > 0 then
+      arm.gust = arm.gust > 0.01 and arm.gust * math.exp(-dt / 1.5) or 0
+      arm.bend.depth = math.min(params.depth * (1 + arm.gust), 1.3)
     end
   end
-  arm.gust = arm.gust * math.exp(-dt / 1.5)
-end
-
-state.time = state.time or 0
-sim:on_step(function(dt)
-  -- a phase that is summed up, so that a new speed does not make the arms jump
-  state.time = state.time + 2 * math.pi * params.speed * dt
-  for _, arm in ipairs(arms) do sway(arm, state.time, dt) end
 end)
 
 osc:on("/sway", function(strength, name)

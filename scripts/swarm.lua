@@ -23,6 +23,7 @@ local head = first:add_part("head", head_shape, { mass = 0.1, position = vec3(0,
 local tail = first:add_part("tail", tail_shape, { mass = 0.01, position = vec3(-0.15, 0, 0.06), friction = 0 })
 first:add_motor(first:add_joint("tail", head, tail, { position = vec3(-0.07, 0, 0.06), axis = vec3(0, 0, 1) }))
 first:add_behavior("breathe", "beat", { rate = 2.5, depth = 0.5 })
+first:add_behavior("balance", "upright", { parts = "head", stiffness = 0.05, damping = 0.004 })
 
 -- a sunflower's seeds: evenly over the disc, no two at one place, each looking its own way
 local bugs = {}
@@ -54,6 +55,9 @@ sim:on_step(function()
   local edge = state.called and 0.5 or kArena
   for _, bug in ipairs(bugs) do
     local part = bug.root
+    -- they look where they go
+    local ahead = part.rotation * vec3(1, 0, 0)
+    part:apply_torque(vec3(0, 0, 0.01 * ahead:cross(part.linear_velocity).z - 0.003 * part.angular_velocity.z))
     local way = middle - part.center
     way = vec3(way.x, way.y, 0)
     local out = way:length() - edge

@@ -2,9 +2,11 @@
 #include <algorithm>
 #include <cmath>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "player.h"
+#include "sim/behavior_group.h"
 
 namespace limber {
 namespace {
@@ -68,6 +70,162 @@ TEST(Scenes, HelloPlaysWithoutAFault) {
   EXPECT_FALSE(player.engine->world().bodies().empty());
   player.play(5);
   EXPECT_EQ(player.engine->faults(), 0u);
+}
+
+const std::vector<std::pair<std::string, std::string>> kArmBehaviors = {{"random_tip", "random_force"},
+                                                                        {"random_all", "random_force"},
+                                                                        {"force_tip", "force"},
+                                                                        {"rotation_0", "rotation_target"},
+                                                                        {"rotation_1", "rotation_target"},
+                                                                        {"rotation_2", "rotation_target"},
+                                                                        {"rotation_3", "rotation_target"},
+                                                                        {"rotation_4", "rotation_target"},
+                                                                        {"rotation_5", "rotation_target"},
+                                                                        {"speed_tip", "speed"},
+                                                                        {"speed_all", "speed"},
+                                                                        {"targetpos_tip", "target_attraction"},
+                                                                        {"targetpos_all", "target_attraction"},
+                                                                        {"levitation", "random_force"},
+                                                                        {"particles", "random_force"},
+                                                                        {"thrusting", "random_rotation_target"},
+                                                                        {"staccato", "random_rotation_target"},
+                                                                        {"fluidity", "random_rotation_target"},
+                                                                        {"cohesion", "cohesion"},
+                                                                        {"evasion", "cohesion"},
+                                                                        {"alignment", "alignment"}};
+
+TEST(Scenes, EachArmHasTwentyOneBehaviorsThatWait) {
+  Player player("arms.lua");
+  ASSERT_EQ(kArmBehaviors.size(), 21u);
+  for (const auto& body : player.world().bodies()) {
+    for (const auto& [name, type] : kArmBehaviors) {
+      const Behavior* behavior = body->find_behavior(name);
+      ASSERT_NE(behavior, nullptr) << body->name() << " " << name;
+      EXPECT_EQ(behavior->type().name, type) << name;
+      EXPECT_FALSE(behavior->active()) << name;
+      const bool of_tip =
+          name.ends_with("_tip") || name == "levitation" || name == "particles" || behavior->group() != nullptr;
+      if (of_tip) {
+        ASSERT_EQ(behavior->parts().size(), 1u) << name;
+        EXPECT_EQ(behavior->parts()[0]->name(), "tip") << name;
+      }
+    }
+    EXPECT_EQ(body->behaviors().size(), 23u) << "and the two that breathe";
+    EXPECT_EQ(body->find_behavior("rotation_3")->motors().size(), 1u);
+    EXPECT_EQ(body->find_behavior("rotation_3")->motors()[0]->name(), "joint_4");
+    EXPECT_EQ(body->find_behavior("thrusting")->motors().size(), 2u);
+    EXPECT_EQ(body->find_behavior("staccato")->motors().size(), 6u);
+  }
+  EXPECT_LT(player.value("/physics/body/arm7/behavior/evasion/amount"), 0) << "or it would not evade";
+}
+
+// the farthest that tips come from where they were, each by itself, in so many seconds
+std::vector<double> travel(Player& player, double seconds) {
+  std::vector<Vec3> before;
+  for (const auto& body : player.world().bodies()) before.push_back(body->parts().back()->center());
+  std::vector<double> farthest(before.size(), 0);
+  for (int tick = 0; tick < static_cast<int>(60 * seconds); tick++) {
+    player.engine->tick();
+    for (std::size_t i = 0; i < before.size(); i++) {
+      farthest[i] =
+          std::max(farthest[i], glm::distance(before[i], player.world().bodies()[i]->parts().back()->center()));
+    }
+  }
+  return farthest;
+}
+
+TEST(Scenes, ABehaviorOfAnArmIsSwitchedOnOverOsc) {
+  Player player("arms.lua");
+  player.send("/physics/body/*/behavior/{bend,twist}/active", {Arg::of(0.0)});
+  player.play(4);
+  const std::vector<double> still = travel(player, 1);
+  player.send("/physics/body/arm3/behavior/thrusting/active", {Arg::of(1.0)});
+  const std::vector<double> moved = travel(player, 3);
+  for (std::size_t i = 0; i < moved.size(); i++) {
+    EXPECT_LT(still[i], 0.02) << "arm " << i + 1 << " rests";
+    if (i == 2) {
+      EXPECT_GT(moved[i], 0.2);
+    } else {
+      EXPECT_LT(moved[i], 0.02) << "arm " << i + 1;
+    }
+  }
+  EXPECT_EQ(player.engine->faults(), 0u);
+}
+
+TEST(Scenes, AGustBendsTheArmsDeeperAndDiesDown) {
+  Player player("arms.lua");
+  player.play(2);
+  const auto depth = [&](int arm) {
+    return player.value("/physics/body/arm" + std::to_string(arm) + "/behavior/bend/depth");
+  };
+  EXPECT_NEAR(depth(3), 0.6, 1e-9);
+  player.send("/sway", {Arg::of(0.5), Arg::of("arm3")});
+  player.engine->tick();
+  EXPECT_NEAR(depth(3), 0.9, 0.01);
+  EXPECT_NEAR(depth(4), 0.6, 1e-9);
+  player.play(1.5);
+  EXPECT_NEAR(depth(3), 0.6 * (1 + 0.5 * std::exp(-1)), 0.01);
+  player.play(8);
+  EXPECT_NEAR(depth(3), 0.6, 1e-9);
+  // a slider is for all
+  player.send("/scene/depth", {Arg::of(0.3)});
+  player.engine->tick();
+  EXPECT_NEAR(depth(1), 0.3, 1e-9);
+  EXPECT_NEAR(depth(16), 0.3, 1e-9);
+}
+
+TEST(Scenes, TheSwarmComesToShareAWayAndStaysInItsArena) {
+  Player player("swarm.lua");
+  std::vector<const Part*> heads;
+  for (const auto& body : player.world().bodies()) {
+    if (body->name().starts_with("bug")) heads.push_back(body->root());
+  }
+  ASSERT_EQ(heads.size(), 100u);
+  // of the headings of those around, since a swarm that turns back at the edge has none as a whole
+  const auto polarisation = [&] {
+    double sum = 0;
+    for (const Part* a : heads) {
+      Vec3 way(0);
+      double near = 0;
+      for (const Part* b : heads) {
+        if (glm::distance(a->center(), b->center()) > 1) continue;
+        way += normalized(b->linear_velocity());
+        near++;
+      }
+      sum += glm::length(way) / near;
+    }
+    return sum / static_cast<double>(heads.size());
+  };
+  player.engine->tick();
+  const double before = polarisation();
+  double later = 0;
+  for (int second = 0; second < 30; second++) {
+    player.play(1);
+    if (second >= 15) later += polarisation() / 15;
+    for (const Part* head : heads) {
+      ASSERT_LT(std::hypot(head->center().x, head->center().y), 7) << "after " << second << " s";
+      ASSERT_GT((head->pose().rotation * Vec3(0, 0, 1)).z, 0.7) << "after " << second << " s";
+    }
+  }
+  EXPECT_LT(before, 0.5);
+  EXPECT_GT(later, 0.8);
+  EXPECT_EQ(player.engine->faults(), 0u);
+}
+
+TEST(Scenes, LivePlaysAMinuteWithoutAFault) {
+  Player player("live.lua");
+  player.play(60);
+  EXPECT_EQ(player.engine->faults(), 0u);
+  // the arm breathes, balls are thrown up at each beat
+  double highest = 0;
+  for (int tick = 0; tick < 240; tick++) {
+    player.engine->tick();
+    for (int i = 1; i <= 8; i++) {
+      highest = std::max(highest, player.body("ball" + std::to_string(i)).root()->center().z);
+    }
+  }
+  EXPECT_GT(highest, 0.13);
+  EXPECT_NEAR(player.value("/physics/body/arm/behavior/breath/rate"), 0.2, 1e-12);
 }
 
 }  // namespace

@@ -1,0 +1,250 @@
+// The behaviours that ship in behaviors_lua/ beside the twins: each does what its first lines say.
+#include <cmath>
+#include <complex>
+
+#include "player.h"
+#include "sim/behavior_list.h"
+
+namespace limber {
+namespace {
+
+constexpr double kTick = 1.0 / 60;
+
+// a scene of its own, played with the shipped behaviours
+struct Ballet {
+  explicit Ballet(const std::string& scene) : player(show.write("scripts/scene.lua", scene)) {}
+  ~Ballet() { EXPECT_EQ(player.engine->faults(), 0u); }
+  ShowFolder show;
+  Player player;
+};
+
+TEST(Breathe, TargetsFollowTheSineEachALittleLater) {
+  Ballet ballet(R"(
+local arm = sim:load_urdf("urdf/arm6.urdf", { name = "arm" })
+arm:add_behavior("breathe", "breath", { rate = 0.3, depth = 0.4, lag = 0.7, offset = 0.2 })
+)");
+  Player& player = ballet.player;
+  const Body& arm = player.body("arm");
+  for (int tick = 1; tick <= 240; tick++) {
+    player.engine->tick();
+    for (std::size_t i = 0; i < arm.motors().size(); i++) {
+      const double phase = 2 * kPi * 0.3 * tick * kTick - 0.2 - static_cast<double>(i + 1) * 0.7;
+      ASSERT_NEAR(player.value("/physics/body/arm/motor/" + arm.motors()[i]->name() + "/target"), 0.4 * std::sin(phase),
+                  1e-9)
+          << "motor " << i + 1 << " at tick " << tick;
+    }
+  }
+  // another rate goes on from where it is: no motor is sent further at once than it moves in a tick
+  const double before = player.value("/physics/body/arm/motor/joint_1/target");
+  player.send("/physics/body/arm/behavior/breath/rate", {Arg::of(2.0)});
+  player.engine->tick();
+  EXPECT_LT(std::abs(player.value("/physics/body/arm/motor/joint_1/target") - before),
+            0.4 * 2 * kPi * 2 * kTick + 1e-9);
+}
+
+// how far a joint's swing of that frequency lags behind a cosine, from its angles at each tick
+double lag_of(const std::vector<double>& angles, double frequency) {
+  std::complex<double> sum = 0;
+  for (std::size_t i = 0; i < angles.size(); i++) {
+    sum += angles[i] * std::polar(1.0, -2 * kPi * frequency * static_cast<double>(i) * kTick);
+  }
+  return -std::arg(sum);
+}
+
+TEST(Wave, CrestsTravelRateTimesLengthMotorsASecond) {
+  Ballet ballet(R"(
+sim.gravity = vec3()
+local arm = sim:load_urdf("urdf/arm17.urdf", { name = "arm" })
+arm:add_behavior("wave", "crawl", { rate = 0.5, length = 8, depth = 0.2 })
+)");
+  Player& player = ballet.player;
+  const Body& arm = player.body("arm");
+  player.play(4);  // until it swings evenly
+  std::vector<std::vector<double>> angles(arm.joints().size());
+  for (int i = 0; i < 480; i++) {  // four swings
+    player.engine->tick();
+    for (std::size_t k = 0; k < angles.size(); k++) angles[k].push_back(arm.joints()[k]->value());
+  }
+  // from one joint to the next the swing comes later by the same part of a turn: that is its speed
+  double turned = 0;
+  for (std::size_t k = 1; k < angles.size(); k++) {
+    const double step = lag_of(angles[k], 0.5) - lag_of(angles[k - 1], 0.5);
+    turned += step - 2 * kPi * std::floor(step / (2 * kPi));
+  }
+  const double motors_a_second = 0.5 * 2 * kPi * static_cast<double>(angles.size() - 1) / turned;
+  EXPECT_NEAR(motors_a_second, 0.5 * 8, 0.1);
+}
+
+TEST(Wave, GrowsTowardsTheTip) {
+  Ballet ballet(R"(
+sim.gravity = vec3()
+local arm = sim:load_urdf("urdf/arm17.urdf", { name = "arm" })
+arm:add_behavior("wave", "crawl", { rate = 1, depth = 0.2, growth = 1 })
+)");
+  Player& player = ballet.player;
+  double root = 0, tip = 0;
+  for (int i = 0; i < 120; i++) {
+    player.engine->tick();
+    root = std::max(root, std::abs(player.value("/physics/body/arm/motor/joint_1/target")));
+    tip = std::max(tip, std::abs(player.value("/physics/body/arm/motor/joint_17/target")));
+  }
+  EXPECT_EQ(root, 0);
+  EXPECT_NEAR(tip, 0.2, 0.001);
+}
+
+TEST(Follow, TheTipReachesATargetThatComesOverOsc) {
+  // an arm whose motors are off hangs; its tip is led by force alone
+  Ballet ballet(R"(
+local arm = sim:load_urdf("urdf/arm6.urdf", { name = "arm", motors = "off", position = vec3(0, 0, 2),
+  rotation = quat.euler(math.pi, 0, 0) })
+for motor in arm:motors() do motor.damping = 0.2 end
+arm:add_behavior("follow", "hand", { parts = "tip", target = arm:part("tip").center })
+local ball = sim:add_body("ball")
+ball:add_part("ball", sim:add_sphere_shape("ball", 0.1), { mass = 0.5, position = vec3(3, 0, 1) })
+ball:add_behavior("follow", "ball")
+)");
+  Player& player = ballet.player;
+  const Part& tip = *player.body("arm").find_part("tip");
+  const Part& ball = *player.body("ball").root();
+  player.play(2);
+  const Vec3 aside(0, 2, 0);  // or they would meet
+  for (const Vec3 target : {Vec3(0.5, 0.3, 0.9), Vec3(-0.6, 0.2, 1.1)}) {
+    const auto told = [](const Vec3& at) { return std::vector<Arg>{Arg::of(at.x), Arg::of(at.y), Arg::of(at.z)}; };
+    player.send("/physics/body/arm/behavior/hand/target", told(target));
+    player.send("/physics/body/ball/behavior/ball/target", told(target + aside));
+    double tip_before = glm::distance(tip.center(), target);
+    double ball_before = glm::distance(ball.center(), target + aside);
+    EXPECT_GT(tip_before, 0.3);
+    for (int i = 0; i < 4; i++) {
+      player.play(2);
+      const double tip_now = glm::distance(tip.center(), target);
+      const double ball_now = glm::distance(ball.center(), target + aside);
+      EXPECT_LT(tip_now, 0.7 * tip_before) << "after " << 2 * i + 2 << " s";
+      EXPECT_LT(ball_now, 0.7 * ball_before) << "after " << 2 * i + 2 << " s";
+      tip_before = tip_now;
+      ball_before = ball_now;
+    }
+    EXPECT_LT(tip_before, 0.05);
+    EXPECT_LT(ball_before, 0.05) << "although it has a weight";
+  }
+}
+
+TEST(Orbit, ReachesItsRadiusAndSpeed) {
+  Ballet ballet(R"(
+local ball = sim:add_sphere_shape("ball", 0.05)
+for i, place in ipairs { vec3(0.1, 0, 1), vec3(3, 0, 2), vec3(0, 0, 1) } do
+  local moon = sim:add_body("moon" .. i)
+  moon:add_part("moon", ball, { mass = 0.2 * i, position = place })
+  moon:add_behavior("orbit", "round", { center = vec3(0, 0, 1), axis = vec3(0, 1, 4), radius = 0.8, speed = -1.5 })
+end
+)");
+  Player& player = ballet.player;
+  player.play(8);
+  const Vec3 axis = normalized(Vec3(0, 1, 4));
+  for (int tick = 0; tick < 240; tick++) {
+    player.engine->tick();
+    for (const char* name : {"moon1", "moon2", "moon3"}) {
+      const Part& moon = *player.body(name).root();
+      const Vec3 from = moon.center() - Vec3(0, 0, 1);
+      const double height = glm::dot(from, axis);
+      const Vec3 flat = from - axis * height;
+      ASSERT_NEAR(glm::length(flat), 0.8, 0.04) << name;
+      ASSERT_NEAR(height, 0, 0.04) << name;
+      ASSERT_NEAR(glm::dot(moon.linear_velocity(), glm::cross(axis, flat / glm::length(flat))), -1.5, 0.075) << name;
+    }
+  }
+}
+
+TEST(Balance, APoleThatIsPushedOverComesBack) {
+  Ballet ballet(R"(
+sim:add_body("floor"):add_part("floor", sim:add_plane_shape("floor"), { friction = 1 })
+local pole = sim:add_body("pole")
+pole:add_part("pole", sim:add_cylinder_shape("pole", 0.08, 1), { mass = 1, position = vec3(0, 0, 0.5) })
+pole:add_behavior("balance", "upright")
+osc:on("/push", function(angle)
+  pole.rotation = quat.axis(vec3(1, 1, 0), math.rad(angle))
+  pole.position = vec3(0, 0, 0.6)
+end)
+)");
+  Player& player = ballet.player;
+  const Part& pole = *player.body("pole").root();
+  const auto off_upright = [&] {
+    return std::acos(std::clamp((pole.pose().rotation * Vec3(0, 0, 1)).z, -1.0, 1.0)) * 180 / kPi;
+  };
+  player.play(0.5);
+  for (const double angle : {20.0, 80.0}) {
+    player.send("/push", {Arg::of(angle)});
+    player.engine->tick();
+    EXPECT_GT(off_upright(), angle - 5);
+    player.play(4);
+    EXPECT_LT(off_upright(), 2);
+  }
+  // without it, it falls
+  player.send("/physics/body/pole/behavior/upright/active", {Arg::of(0.0)});
+  player.send("/push", {Arg::of(20.0)});
+  player.play(4);
+  EXPECT_GT(off_upright(), 60);
+}
+
+TEST(Flock, SixtyBodiesWithHeadingsOfTheirOwnComeToShareOne) {
+  Ballet ballet(R"(
+sim.gravity = vec3()
+local ball = sim:add_sphere_shape("ball", 0.05)
+local birds = {}
+for i = 1, 60 do
+  birds[i] = sim:add_body("bird" .. i)
+  birds[i]:add_part("bird", ball, { mass = 0.1, position = rng:uniform(vec3(-1, -1, -1), vec3(1, 1, 1)) * 1.5 })
+end
+sim:add_group_behavior("flock", "swarm", { bodies = "bird*" })
+sim:on_start(function() for _, bird in ipairs(birds) do bird.linear_velocity = rng:direction() end end)
+)");
+  Player& player = ballet.player;
+  // 1: all fly one way; about 0.1: each its own
+  const auto polarisation = [&] {
+    Vec3 sum(0);
+    for (const auto& bird : player.world().bodies()) sum += normalized(bird->root()->linear_velocity());
+    return glm::length(sum) / 60;
+  };
+  EXPECT_LT(polarisation(), 0.35);
+  player.play(20);
+  EXPECT_GT(polarisation(), 0.9);
+  // at the speed that they like, and not in one heap
+  double nearest = 100;
+  for (const auto& a : player.world().bodies()) {
+    EXPECT_NEAR(glm::length(a->root()->linear_velocity()), 1, 0.3);
+    for (const auto& b : player.world().bodies()) {
+      if (a != b) nearest = std::min(nearest, glm::distance(a->root()->center(), b->root()->center()));
+    }
+  }
+  EXPECT_GT(nearest, 0.1);
+}
+
+// each says what it is for, and what each parameter means
+TEST(BehaviorsLua, AreDocumented) {
+  std::string scene = "local arm = sim:load_urdf('urdf/arm6.urdf', { name = 'arm' })\n";
+  std::vector<std::string> types;
+  for (const auto& entry : std::filesystem::directory_iterator(LIMBER_SOURCE_DIR "/behaviors_lua")) {
+    if (entry.path().extension() != ".lua") continue;
+    types.push_back(entry.path().stem().string());
+    std::ifstream in(entry.path());
+    std::string first;
+    std::getline(in, first);
+    EXPECT_TRUE(first.starts_with("-- ")) << entry.path();
+    const std::string text{std::istreambuf_iterator<char>(in), {}};
+    scene += text.find("group = true") != std::string::npos
+                 ? "sim:add_group_behavior('" + types.back() + "', '" + types.back() + "')\n"
+                 : "arm:add_behavior('" + types.back() + "', '" + types.back() + "')\n";
+  }
+  EXPECT_GE(types.size(), 18u);
+  Ballet ballet(scene);
+  for (const std::string& name : types) {
+    const auto type = ballet.player.world().behaviors().types().find(name);
+    ASSERT_NE(type, nullptr) << name;
+    EXPECT_GT(type->doc.size(), 20u) << name;
+    for (const Row& row : type->table->rows()) EXPECT_GT(row.doc.size(), 5u) << name << " " << row.name;
+  }
+  ballet.player.play(2);
+}
+
+}  // namespace
+}  // namespace limber
