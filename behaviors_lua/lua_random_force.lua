@@ -8,7 +8,7 @@ return behavior {
     { "min_amp", 0, min = -1e9, max = 1e9, unit = "N", doc = "The force is drawn from this" },
     { "max_amp", 10, min = -1e9, max = 1e9, unit = "N", doc = "to this." },
     { "rand_interval", 1000, min = 0, max = 1e9, unit = "ms", doc = "Simulated time from one random draw to the next." },
-    { "app_interval", 1, min = 0, max = 1e9, unit = "ms", doc = "Simulated time from one application to the next." },
+    { "app_interval", 1, min = 0, max = 1e9, unit = "ms", doc = "Simulated time from one application to the next; shorter than a tick: every tick." },
   },
   start = function(self) self.state.forces = {} end,
   step = function(self)

@@ -9,7 +9,7 @@ return behavior {
     { "max_target", vec3(0, 0, 0), min = -1e4, max = 1e4, unit = "rad", doc = "to these." },
     { "speed", 0.1, min = 0, max = 1e4, unit = "rad", doc = "How far ahead of the joint the servo or spring is set, at each application." },
     { "rand_interval", 1000, min = 0, max = 1e9, unit = "ms", doc = "Simulated time from one random draw to the next." },
-    { "app_interval", 1, min = 0, max = 1e9, unit = "ms", doc = "Simulated time from one application to the next." },
+    { "app_interval", 1, min = 0, max = 1e9, unit = "ms", doc = "Simulated time from one application to the next; shorter than a tick: every tick." },
   },
   start = function(self) self.state.targets = {} end,
   step = function(self)

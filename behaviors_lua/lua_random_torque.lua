@@ -7,7 +7,7 @@ return behavior {
     { "max_torque", vec3(1, 1, 1), min = -1e9, max = 1e9, unit = "N·m", doc = "The other corner." },
     { "scale", 1, min = -1e9, max = 1e9, doc = "What the torque is multiplied by; acts at once." },
     { "rand_interval", 1000, min = 0, max = 1e9, unit = "ms", doc = "Simulated time from one random draw to the next." },
-    { "app_interval", 1, min = 0, max = 1e9, unit = "ms", doc = "Simulated time from one application to the next." },
+    { "app_interval", 1, min = 0, max = 1e9, unit = "ms", doc = "Simulated time from one application to the next; shorter than a tick: every tick." },
   },
   start = function(self) self.state.torques = {} end,
   step = function(self)

@@ -6,7 +6,7 @@ return behavior {
   params = {
     { "target", vec3(0, 0, 0), min = -1e4, max = 1e4, unit = "rad", doc = "About the joint's axes, in its own order; z is the own axis." },
     { "speed", 0.1, min = 0, max = 1e4, unit = "rad", doc = "How far ahead of the joint the servo or spring is set, at each application." },
-    { "app_interval", 1, min = 0, max = 1e9, unit = "ms", doc = "Simulated time from one application to the next." },
+    { "app_interval", 1, min = 0, max = 1e9, unit = "ms", doc = "Simulated time from one application to the next; shorter than a tick: every tick." },
   },
   step = function(self)
     if not self:due("app_interval") then return end

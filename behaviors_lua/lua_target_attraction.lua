@@ -7,7 +7,7 @@ return behavior {
     { "max_dist", 10, min = 0, max = 1e6, unit = "m", doc = "or further than this." },
     { "min_amp", 0, min = -1e9, max = 1e9, unit = "N", doc = "Force close to the point; below 0: away from it." },
     { "max_amp", 10, min = -1e9, max = 1e9, unit = "N", doc = "Force at max_dist." },
-    { "app_interval", 1, min = 0, max = 1e9, unit = "ms", doc = "Simulated time from one application to the next." },
+    { "app_interval", 1, min = 0, max = 1e9, unit = "ms", doc = "Simulated time from one application to the next; shorter than a tick: every tick." },
   },
   step = function(self)
     if not self:due("app_interval") then return end

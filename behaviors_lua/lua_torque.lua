@@ -4,7 +4,7 @@ return behavior {
   params = {
     { "torque", vec3(0, 0, 0), min = -1e9, max = 1e9, unit = "N·m", doc = "About the world's axes." },
     { "scale", 1, min = -1e9, max = 1e9, doc = "What torque is multiplied by." },
-    { "app_interval", 1, min = 0, max = 1e9, unit = "ms", doc = "Simulated time from one application to the next." },
+    { "app_interval", 1, min = 0, max = 1e9, unit = "ms", doc = "Simulated time from one application to the next; shorter than a tick: every tick." },
   },
   step = function(self)
     if not self:due("app_interval") then return end
