@@ -93,16 +93,12 @@ std::uint64_t BehaviorScripts::hash(std::uint64_t start) const {
 
 // what every call into a behaviour's functions goes through
 template <class Call>
-BehaviorFault BehaviorScripts::inside(std::int32_t file, Call call) {
+BehaviorFault BehaviorScripts::inside(Call call) {
   if (vm_ == nullptr) return {"the scene no longer names this type; name it once at the top level", "", 0};
-  for (const std::int32_t number : dropped_) vm_->drop_behavior(number);
-  dropped_.clear();
-  Generator& generator = generators_[static_cast<std::size_t>(file)];
-  const Generator before = generator;
+  for (const std::int32_t number : std::exchange(dropped_, {})) vm_->drop_behavior(number);
   const std::int32_t outer = std::exchange(context_->answer.in_behavior, 1);
   BehaviorFault fault = call();
   context_->answer.in_behavior = outer;
-  if (!fault.text.empty()) generator = before;
   return fault;
 }
 
@@ -110,16 +106,16 @@ std::int32_t BehaviorScripts::make(const Behavior& behavior, std::int32_t file) 
   return vm_ == nullptr ? 0 : vm_->make_behavior(file, behavior.id());
 }
 
-BehaviorFault BehaviorScripts::start(std::int32_t file, std::int32_t number) {
-  return inside(file, [&] { return vm_->start_behavior(number); });
+BehaviorFault BehaviorScripts::start(std::int32_t number) {
+  return inside([&] { return vm_->start_behavior(number); });
 }
 
-BehaviorFault BehaviorScripts::step(std::int32_t file, std::int32_t number, double dt) {
-  return inside(file, [&] { return vm_->step_behavior(number, dt); });
+BehaviorFault BehaviorScripts::step(std::int32_t number, double dt) {
+  return inside([&] { return vm_->step_behavior(number, dt); });
 }
 
-BehaviorFault BehaviorScripts::restore(std::int32_t file, std::int32_t number, std::string_view state, bool migrate) {
-  return inside(file, [&] { return vm_->restore_behavior(number, state, migrate); });
+BehaviorFault BehaviorScripts::restore(std::int32_t number, std::string_view state, bool migrate) {
+  return inside([&] { return vm_->restore_behavior(number, state, migrate); });
 }
 
 Result<std::string> BehaviorScripts::state(std::int32_t number) {

@@ -56,10 +56,10 @@ class BehaviorScripts : public std::enable_shared_from_this<BehaviorScripts> {
   // Calls of one instance, by its number in the Vm; a fault without text: it went well.
   /// Introduces a behaviour to the Vm: its number there, 0 when the Vm is gone.
   std::int32_t make(const Behavior& behavior, std::int32_t file);
-  BehaviorFault start(std::int32_t file, std::int32_t number);
-  BehaviorFault step(std::int32_t file, std::int32_t number, double dt);
+  BehaviorFault start(std::int32_t number);
+  BehaviorFault step(std::int32_t number, double dt);
   /// Gives the instance the state of an older one; `migrate`: through the function of that name, if the file has it.
-  BehaviorFault restore(std::int32_t file, std::int32_t number, std::string_view state, bool migrate);
+  BehaviorFault restore(std::int32_t number, std::string_view state, bool migrate);
   /// Its `state` as text, for another Vm. The error names the key that holds what can't be kept.
   Result<std::string> state(std::int32_t number);
   /// The instance is no longer needed.
@@ -72,7 +72,7 @@ class BehaviorScripts : public std::enable_shared_from_this<BehaviorScripts> {
     bool seeded = false;
   };
   template <class Call>
-  BehaviorFault inside(std::int32_t file, Call call);
+  BehaviorFault inside(Call call);
 
   ScriptContext* context_;
   Vm* vm_ = nullptr;

@@ -17,12 +17,8 @@ LuaBehavior::~LuaBehavior() {
   if (number_ != 0) scripts_->drop(number_);
 }
 
-template <class Call>
-bool LuaBehavior::well(Call call) {
-  keep_progress(before_);
-  BehaviorFault fault = call();
+bool LuaBehavior::well(BehaviorFault fault) {
   if (fault.text.empty()) return true;
-  take_back(before_);
   fail(std::move(fault));
   return false;
 }
@@ -33,18 +29,18 @@ bool LuaBehavior::ready() {
   if (number_ == 0) return false;
   if (!inherited_) return true;
   const Inheritance given = *std::exchange(inherited_, std::nullopt);
-  return well([&] { return scripts_->restore(file_, number_, given.state, given.from != file().text); });
+  return well(scripts_->restore(number_, given.state, given.from != file().text));
 }
 
 void LuaBehavior::start() {
   started_ = false;
-  if (ready()) started_ = well([&] { return scripts_->start(file_, number_); });
+  if (ready()) started_ = well(scripts_->start(number_));
 }
 
 void LuaBehavior::step(double dt) {
   // one that failed in its start tries that again first
   if (!started_) start();
-  if (started_ && ready()) well([&] { return scripts_->step(file_, number_, dt); });
+  if (started_ && ready()) well(scripts_->step(number_, dt));
 }
 
 void LuaBehavior::take_over(Behavior& before) {

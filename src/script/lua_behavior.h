@@ -30,9 +30,7 @@ class LuaBehavior final : public Behavior {
 
  private:
   bool ready();
-  /// Makes a call; one that fails is taken back and suspends it.
-  template <class Call>
-  bool well(Call call);
+  bool well(BehaviorFault fault);
 
   /// A state on its way from another instance, and the text of the file whose it was.
   struct Inheritance {
@@ -45,7 +43,6 @@ class LuaBehavior final : public Behavior {
   std::int32_t number_ = 0;  // in the Vm; 0: not there yet
   bool started_ = false;
   std::optional<Inheritance> inherited_;
-  Progress before_;  // scratch of a call
 };
 
 }  // namespace limber

@@ -95,12 +95,7 @@ bool Behavior::runs() const { return !removed() && active() && fault_.text.empty
 double Behavior::microseconds() const { return 1e6 * (group_ == nullptr ? seconds_ : group_->seconds_a_member()); }
 void Behavior::read_time(double* out) const { out[0] = microseconds(); }
 
-void Behavior::active_written(void* thing, const Row&) {
-  auto& behavior = *static_cast<Behavior*>(thing);
-  if (behavior.fault_.text.empty()) return;
-  behavior.world().behaviors().keep_fault(behavior);
-  behavior.fault_ = {};
-}
+void Behavior::active_written(void* thing, const Row&) { static_cast<Behavior*>(thing)->fault_ = {}; }
 
 void Behavior::call_attention() {
   if (group_ != nullptr) group_->attention_ = true;
@@ -144,16 +139,6 @@ bool Behavior::due(const Row& row) {
   if (interval != beat.interval) beat = {&row, beat.anchor + beat.count * beat.interval, interval, 0};
   const double count = std::floor((now + slack - beat.anchor) / interval);
   return count > std::exchange(beat.count, std::max(count, beat.count));
-}
-
-void Behavior::keep_progress(Progress& into) const {
-  into.random = random_;
-  into.beats.assign(beats_.begin(), beats_.end());
-}
-
-void Behavior::take_back(const Progress& progress) {
-  random_ = progress.random;
-  beats_.assign(progress.beats.begin(), progress.beats.end());
 }
 
 void Behavior::attach(Body& body, NodeId id, std::shared_ptr<const BehaviorType> type,
@@ -204,11 +189,6 @@ Result<void> Behavior::resolve() {
 
 void Behavior::restart() {
   call_attention();
-  WorldUndo& undo = world().undo();
-  undo.note([](void* behavior, std::size_t fresh) { static_cast<Behavior*>(behavior)->fresh_ = fresh != 0; }, this,
-            fresh_ ? 1 : 0);
-  undo.note([](void* behavior, std::size_t seed) { static_cast<Behavior*>(behavior)->seeded_with_ = seed; }, this,
-            seeded_with_);
   fresh_ = true;
   seeded_with_ = kNoSeed;
 }

@@ -112,6 +112,9 @@ class Behavior {
   bool due(std::uint32_t parameter) { return due(type_->table->row(kCommonBehaviorRows + parameter)); }
   const double* values(std::uint32_t parameter) const;
 
+ private:
+  friend class BehaviorList;
+  friend class BehaviorGroup;
   /// When an interval fired last, counted from an anchor so that no error adds up.
   struct Beat {
     const Row* row = nullptr;
@@ -119,17 +122,7 @@ class Behavior {
     double interval = 0;  // s
     double count = 0;
   };
-  /// How far its draws and intervals have come: kept before a step that may be taken back.
-  struct Progress {
-    Random random;
-    std::vector<Beat> beats;
-  };
-  void keep_progress(Progress& into) const;
-  void take_back(const Progress& progress);
 
- private:
-  friend class BehaviorList;
-  friend class BehaviorGroup;
   static constexpr std::uint64_t kNoSeed = ~std::uint64_t{0};  // beyond what the row `seed` takes
   void attach(Body& body, NodeId id, std::shared_ptr<const BehaviorType> type,
               std::shared_ptr<const BehaviorSetup> setup, BehaviorGroup* group);

@@ -26,6 +26,12 @@ void say_left_aside(const BehaviorType& type, const Body& body, std::string_view
               to_parts ? "parts" : "motors", to_parts ? "joints and motors" : "parts");
 }
 
+// what came last goes first, mostly
+template <class T, class Is>
+auto from_behind(std::vector<T>& list, Is is) {
+  return std::find_if(list.rbegin(), list.rend(), is).base() - 1;
+}
+
 }  // namespace
 
 BehaviorList::BehaviorList(World& world, NodeId physics)
@@ -94,6 +100,57 @@ Result<BehaviorGroup*> BehaviorList::add_group(std::string_view type_name, std::
   return entries_.back().group.get();
 }
 
+// what a guarded call has made goes again when it fails
+void BehaviorList::note_made() {
+  if (!world_.undo().active()) return;
+  const auto take_back = [](void* list, std::size_t count) {
+    auto& self = *static_cast<BehaviorList*>(list);
+    while (self.entries_.size() > count) self.remove_last();
+  };
+  world_.undo().note(take_back, this, entries_.size());
+}
+
+void BehaviorList::remove_last() {
+  const Entry& last = entries_.back();
+  if (last.group != nullptr) {
+    remove_group(*last.group);
+  } else {
+    remove(*last.single);
+  }
+}
+
+void BehaviorList::bury(std::unique_ptr<Behavior> behavior) {
+  behavior->body_ = nullptr;
+  if (stepping_) graves_.push_back(std::move(behavior));
+}
+
+void BehaviorList::remove(Behavior& behavior) {
+  std::erase(behavior.body_->behaviors_, &behavior);
+  world_.store().remove(behavior.id_);
+  if (BehaviorGroup* group = behavior.group_) {
+    group->left_.push_back(behavior.body_->id());
+    const auto at = from_behind(group->members_, [&](const auto& member) { return member.get() == &behavior; });
+    bury(std::move(*at));
+    group->members_.erase(at);
+    group->laid_out_ = false;
+    return;
+  }
+  const auto at = from_behind(entries_, [&](const Entry& e) { return e.single.get() == &behavior; });
+  bury(std::move(at->single));
+  if (!stepping_) entries_.erase(at);
+}
+
+void BehaviorList::remove_group(BehaviorGroup& group) {
+  while (!group.members_.empty()) remove(*group.members_.back());
+  world_.store().remove(group.id_);
+  const auto at = from_behind(entries_, [&](const Entry& e) { return e.group.get() == &group; });
+  if (stepping_) {
+    group_graves_.push_back(std::move(at->group));
+  } else {
+    entries_.erase(at);
+  }
+}
+
 BehaviorGroup* BehaviorList::find_group(std::string_view name) const {
   const NodeId id = world_.store().child(group_node_, name);
   return id.null() ? nullptr : static_cast<BehaviorGroup*>(world_.store().thing(id));
@@ -102,7 +159,7 @@ BehaviorGroup* BehaviorList::find_group(std::string_view name) const {
 std::vector<BehaviorGroup*> BehaviorList::groups() const {
   std::vector<BehaviorGroup*> list;
   for (const Entry& entry : entries_) {
-    if (entry.group != nullptr && world_.store().alive(entry.group->id_)) list.push_back(entry.group.get());
+    if (entry.group != nullptr) list.push_back(entry.group.get());
   }
   return list;
 }

@@ -7,7 +7,6 @@
 #include <span>
 #include <string>
 #include <string_view>
-#include <utility>
 #include <vector>
 
 #include "sim/behavior.h"
@@ -31,8 +30,7 @@ class BehaviorList {
   Result<Behavior*> add(Body& body, std::string_view type, std::string name, BehaviorSetup setup = {});
   /// Attaches one to each of several bodies. Errors as of add; a body that is named and does not exist.
   Result<BehaviorGroup*> add_group(std::string_view type, std::string name, GroupSetup setup = {});
-  /// Detaches it. May be called while behaviours step: it does not act again. In a guarded call it is out of sight at
-  /// once and goes when the call has ended well.
+  /// Detaches it. May be called while behaviours step: it does not act again.
   void remove(Behavior& behavior);
   void remove_group(BehaviorGroup& group);
   void clear();
@@ -87,12 +85,6 @@ class BehaviorList {
   void say_fault(const Behavior& behavior) const;
   void note_made();
   void remove_last();
-  void take_out(Behavior& behavior);
-  void take_out(BehaviorGroup& group);
-  void hide(Behavior& behavior);
-  void hide(BehaviorGroup& group);
-  /// What it rests with is about to be forgotten.
-  void keep_fault(Behavior& behavior);
   void bury(std::unique_ptr<Behavior> behavior);
 
   World& world_;
@@ -101,13 +93,6 @@ class BehaviorList {
   std::vector<Entry> entries_;
   std::vector<std::unique_ptr<Behavior>> graves_;  // removed while they were stepped
   std::vector<std::unique_ptr<BehaviorGroup>> group_graves_;
-  // what a guarded call has taken out of sight, and errors that it has cleared
-  struct Hidden {
-    Behavior* behavior;
-    std::size_t place, place_in_tree;  // among its body's, among its node's siblings
-  };
-  std::vector<Hidden> hidden_;
-  std::vector<std::pair<Behavior*, BehaviorFault>> faults_;
   std::vector<std::weak_ptr<NeighborSet>> neighbor_sets_;
   std::uint64_t structure_ = 0;
   std::uint64_t turn_ = 0;

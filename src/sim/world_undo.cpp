@@ -43,7 +43,6 @@ void WorldUndo::begin() {
   active_ = true;
   call_++;
   entries_.clear();
-  at_end_.clear();
   forces_.clear();
   bodies_.clear();
   motions_.clear();
@@ -54,7 +53,6 @@ void WorldUndo::begin() {
 void WorldUndo::end() {
   active_ = false;
   world_.store_.end_undo();
-  for (const Entry& entry : at_end_) entry.step(entry.owner, entry.value);
   for (Hidden& hidden : hidden_) {
     hidden.body.reset();
     world_.store_.drop_hidden(hidden.id);
@@ -72,10 +70,6 @@ void WorldUndo::take_back() {
 
 void WorldUndo::note(Step step, void* owner, std::size_t value) {
   if (active_) entries_.push_back({step, owner, value});
-}
-
-void WorldUndo::at_end(Step step, void* owner, std::size_t value) {
-  if (active_) at_end_.push_back({step, owner, value});
 }
 
 bool WorldUndo::first_time(std::uint64_t& kept_in) const { return std::exchange(kept_in, call_) != call_; }

@@ -50,8 +50,6 @@ class WorldUndo {
   /// For what other rooms make and change: on failure `step` is called, newest first among all that is taken back.
   using Step = void (*)(void* owner, std::size_t value);
   void note(Step step, void* owner, std::size_t value = 0);
-  /// What is done for good only when the call ends well: `step` is called then, in the order of the calls.
-  void at_end(Step step, void* owner, std::size_t value = 0);
 
  private:
   struct Entry {
@@ -69,7 +67,7 @@ class WorldUndo {
   bool active_ = false;
   bool reset_asked_ = false;
   std::uint64_t call_ = 0;
-  std::vector<Entry> entries_, at_end_;
+  std::vector<Entry> entries_;
   std::vector<Forces> forces_;
   std::vector<BodyState> bodies_;
   std::vector<Motion> motions_;
