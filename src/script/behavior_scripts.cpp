@@ -73,7 +73,8 @@ Result<std::shared_ptr<const BehaviorType>> BehaviorScripts::declare(std::int32_
 }
 
 Random& BehaviorScripts::generator(std::int32_t file) {
-  Generator& generator = generators_[static_cast<std::size_t>(file)];
+  keep_generator(file);
+  Generator& generator = generators_[static_cast<std::size_t>(file)].now;
   const std::uint64_t seed = context_->world->seed();
   const bool later_seed = context_->answer.top_level != 0 && generator.seed != seed;
   if (!generator.seeded || later_seed) {
@@ -82,10 +83,24 @@ Random& BehaviorScripts::generator(std::int32_t file) {
   return generator.random;
 }
 
+// before it is drawn from: a failing call has not drawn
+void BehaviorScripts::keep_generator(std::int32_t file) {
+  FileGenerator& generator = generators_[static_cast<std::size_t>(file)];
+  WorldUndo& undo = context_->world->undo();
+  if (!undo.active() || std::exchange(generator.kept_in, context_->answer.call) == context_->answer.call) return;
+  generator.before = generator.now;
+  undo.note(
+      [](void* scripts, std::size_t number) {
+        FileGenerator& generator = static_cast<BehaviorScripts*>(scripts)->generators_[number];
+        generator.now = generator.before;
+      },
+      this, static_cast<std::size_t>(file));
+}
+
 std::uint64_t BehaviorScripts::hash(std::uint64_t start) const {
-  for (const Generator& generator : generators_) {
-    if (!generator.seeded) continue;
-    const auto& words = generator.random.state();
+  for (const FileGenerator& generator : generators_) {
+    if (!generator.now.seeded) continue;
+    const auto& words = generator.now.random.state();
     start = hash_bytes({reinterpret_cast<const char*>(words.data()), sizeof words}, start);
   }
   return start;

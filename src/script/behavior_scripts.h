@@ -71,14 +71,20 @@ class BehaviorScripts : public std::enable_shared_from_this<BehaviorScripts> {
     std::uint64_t seed = 0;
     bool seeded = false;
   };
+  /// One, and what it was when the guarded call began that drew from it last.
+  struct FileGenerator {
+    Generator now, before;
+    std::int32_t kept_in = 0;
+  };
+  void keep_generator(std::int32_t file);
   template <class Call>
   BehaviorFault inside(Call call);
 
   ScriptContext* context_;
   Vm* vm_ = nullptr;
   std::vector<BehaviorFile> files_;
-  std::vector<Generator> generators_;  // one a file
-  std::vector<std::int32_t> dropped_;  // not told to the Vm yet
+  std::vector<FileGenerator> generators_;  // one a file
+  std::vector<std::int32_t> dropped_;      // not told to the Vm yet
 };
 
 }  // namespace limber

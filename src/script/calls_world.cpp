@@ -11,6 +11,7 @@
 #include "script/context.h"
 #include "script/guard.h"
 #include "script/noise.h"
+#include "sim/behavior_list.h"
 
 namespace limber::calls {
 
@@ -20,7 +21,10 @@ Random& generator_of(ScriptContext& c, std::int32_t slot, std::int32_t generatio
   if (slot < -1) return c.behaviors->generator(-2 - slot);
   const NodeId id = id_of(slot, generation);
   // one that outlives its behaviour draws from the scene's
-  return slot >= 0 && c.alive(id) ? static_cast<Behavior*>(c.world->store().thing(id))->random() : c.generator();
+  if (slot < 0 || !c.alive(id)) return c.generator();
+  auto& behavior = *static_cast<Behavior*>(c.world->store().thing(id));
+  c.world->behaviors().undo().keep(behavior);
+  return behavior.random();
 }
 
 }  // namespace

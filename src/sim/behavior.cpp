@@ -95,7 +95,11 @@ bool Behavior::runs() const { return !removed() && active() && fault_.text.empty
 double Behavior::microseconds() const { return 1e6 * (group_ == nullptr ? seconds_ : group_->seconds_a_member()); }
 void Behavior::read_time(double* out) const { out[0] = microseconds(); }
 
-void Behavior::active_written(void* thing, const Row&) { static_cast<Behavior*>(thing)->fault_ = {}; }
+void Behavior::active_written(void* thing, const Row&) {
+  auto& behavior = *static_cast<Behavior*>(thing);
+  behavior.world().behaviors().undo().keep(behavior);
+  behavior.fault_ = {};
+}
 
 void Behavior::call_attention() {
   if (group_ != nullptr) group_->attention_ = true;
@@ -108,6 +112,7 @@ Result<void> Behavior::act_remove(std::span<const double>) {
 
 void Behavior::fail(BehaviorFault fault) {
   if (removed()) return;
+  world().behaviors().undo().keep(*this);
   fault_ = std::move(fault);
   call_attention();
   world().behaviors().say_fault(*this);
@@ -120,6 +125,7 @@ Vec3 Behavior::random_between(const Vec3& a, const Vec3& b) {
 }
 
 bool Behavior::due(const Row& row) {
+  world().behaviors().undo().keep(*this);
   const double now = world().time();
   const double tick = world().timestep();
   const double interval = 1e-3 * store().values(id_, row)[0];
@@ -169,6 +175,7 @@ Result<void> Behavior::resolve() {
   const bool changed = parts != parts_ || joints != joints_ || motors != motors_;
   resolved_at_ = body.structure_;
   if (changed) {
+    if (!id_.null()) world().behaviors().undo().keep_targets(*this);  // else it is being made
     parts_ = std::move(parts);
     joints_ = std::move(joints);
     motors_ = std::move(motors);
@@ -188,6 +195,7 @@ Result<void> Behavior::resolve() {
 }
 
 void Behavior::restart() {
+  world().behaviors().undo().keep(*this);
   call_attention();
   fresh_ = true;
   seeded_with_ = kNoSeed;

@@ -115,6 +115,7 @@ class Behavior {
  private:
   friend class BehaviorList;
   friend class BehaviorGroup;
+  friend class BehaviorUndo;
   /// When an interval fired last, counted from an anchor so that no error adds up.
   struct Beat {
     const Row* row = nullptr;
@@ -151,6 +152,7 @@ class Behavior {
   BehaviorFault fault_;
   double seconds_ = 0;             // of the last tick
   std::uint32_t resolved_at_ = 0;  // the body's structure then
+  std::uint64_t kept_in_ = 0;      // the guarded call that it was kept in last
   bool fresh_ = true;              // start() is to be called before the next step
 };
 

@@ -146,6 +146,7 @@ Result<Behavior*> BehaviorGroup::join(Body& body) {
   const std::size_t width = type_->table->kept_width();
   std::copy_n(std::as_const(store).kept_block(id_), width, store.kept_block((*member)->id()));
   members_.push_back(std::move(*member));
+  world_.behaviors().undo().made_member(*members_.back());
   return members_.back().get();
 }
 

@@ -61,6 +61,7 @@ class BehaviorGroup {
  private:
   friend class Behavior;
   friend class BehaviorList;
+  friend class BehaviorUndo;
   BehaviorGroup(World& world, NodeId parent, std::string name, std::shared_ptr<const BehaviorType> type,
                 GroupSetup setup);
 

@@ -40,7 +40,7 @@ BehaviorList::BehaviorList(World& world, NodeId physics)
 BehaviorList::~BehaviorList() { clear(); }
 
 void BehaviorList::clear() {
-  while (!entries_.empty()) remove_last();
+  while (!entries_.empty()) drop_last();
 }
 
 Result<std::unique_ptr<Behavior>> BehaviorList::make(Body& body, const std::shared_ptr<const BehaviorType>& type,
@@ -92,7 +92,7 @@ Result<BehaviorGroup*> BehaviorList::add_group(std::string_view type_name, std::
   if (good) good = group->follow();
   if (!good) {
     const std::string text = good.error();
-    while (!group->members_.empty()) remove(*group->members_.back());
+    while (!group->members_.empty()) drop(*group->members_.back());
     return Error{text};
   }
   note_made();
@@ -105,17 +105,23 @@ void BehaviorList::note_made() {
   if (!world_.undo().active()) return;
   const auto take_back = [](void* list, std::size_t count) {
     auto& self = *static_cast<BehaviorList*>(list);
-    while (self.entries_.size() > count) self.remove_last();
+    while (self.entries_.size() > count) self.drop_last();
   };
   world_.undo().note(take_back, this, entries_.size());
 }
 
-void BehaviorList::remove_last() {
+void BehaviorList::remove(Behavior& behavior) { world_.undo().active() ? undo_.hide(behavior) : drop(behavior); }
+
+void BehaviorList::remove_group(BehaviorGroup& group) {
+  world_.undo().active() ? undo_.hide(group) : drop_group(group);
+}
+
+void BehaviorList::drop_last() {
   const Entry& last = entries_.back();
   if (last.group != nullptr) {
-    remove_group(*last.group);
+    drop_group(*last.group);
   } else {
-    remove(*last.single);
+    drop(*last.single);
   }
 }
 
@@ -124,7 +130,21 @@ void BehaviorList::bury(std::unique_ptr<Behavior> behavior) {
   if (stepping_) graves_.push_back(std::move(behavior));
 }
 
-void BehaviorList::remove(Behavior& behavior) {
+void BehaviorList::bury(std::unique_ptr<BehaviorGroup> group) {
+  if (stepping_) group_graves_.push_back(std::move(group));
+}
+
+// an entry that has become empty: while behaviours step its place stays, so that the others keep theirs
+void BehaviorList::close_gap(std::size_t place) {
+  if (!stepping_) entries_.erase(entries_.begin() + static_cast<std::ptrdiff_t>(place));
+}
+
+BehaviorList::Entry& BehaviorList::open_gap(std::size_t place) {
+  if (!stepping_) entries_.insert(entries_.begin() + static_cast<std::ptrdiff_t>(place), Entry{});
+  return entries_[place];
+}
+
+void BehaviorList::drop(Behavior& behavior) {
   std::erase(behavior.body_->behaviors_, &behavior);
   world_.store().remove(behavior.id_);
   if (BehaviorGroup* group = behavior.group_) {
@@ -137,18 +157,15 @@ void BehaviorList::remove(Behavior& behavior) {
   }
   const auto at = from_behind(entries_, [&](const Entry& e) { return e.single.get() == &behavior; });
   bury(std::move(at->single));
-  if (!stepping_) entries_.erase(at);
+  close_gap(static_cast<std::size_t>(at - entries_.begin()));
 }
 
-void BehaviorList::remove_group(BehaviorGroup& group) {
-  while (!group.members_.empty()) remove(*group.members_.back());
+void BehaviorList::drop_group(BehaviorGroup& group) {
+  while (!group.members_.empty()) drop(*group.members_.back());
   world_.store().remove(group.id_);
   const auto at = from_behind(entries_, [&](const Entry& e) { return e.group.get() == &group; });
-  if (stepping_) {
-    group_graves_.push_back(std::move(at->group));
-  } else {
-    entries_.erase(at);
-  }
+  bury(std::move(at->group));
+  close_gap(static_cast<std::size_t>(at - entries_.begin()));
 }
 
 BehaviorGroup* BehaviorList::find_group(std::string_view name) const {
@@ -187,7 +204,7 @@ void BehaviorList::copy(const Body& source, Body& copy) {
 }
 
 void BehaviorList::body_gone(Body& body) {
-  while (!body.behaviors_.empty()) remove(*body.behaviors_.back());
+  while (!body.behaviors_.empty()) drop(*body.behaviors_.back());
   for (const Entry& entry : entries_) {
     if (entry.group == nullptr) continue;
     std::erase(entry.group->left_, body.id());

@@ -12,6 +12,7 @@
 #include "sim/behavior.h"
 #include "sim/behavior_group.h"
 #include "sim/behavior_type.h"
+#include "sim/behavior_undo.h"
 #include "sim/neighbors.h"
 
 namespace limber {
@@ -30,7 +31,8 @@ class BehaviorList {
   Result<Behavior*> add(Body& body, std::string_view type, std::string name, BehaviorSetup setup = {});
   /// Attaches one to each of several bodies. Errors as of add; a body that is named and does not exist.
   Result<BehaviorGroup*> add_group(std::string_view type, std::string name, GroupSetup setup = {});
-  /// Detaches it. May be called while behaviours step: it does not act again.
+  /// Detaches it. May be called while behaviours step: it does not act again. A guarded call that fails has not done
+  /// it.
   void remove(Behavior& behavior);
   void remove_group(BehaviorGroup& group);
   void clear();
@@ -63,6 +65,9 @@ class BehaviorList {
   /// The set of these parts, shared by all groups that look at the same ones.
   std::shared_ptr<NeighborSet> neighbor_set(std::vector<Part*> parts);
 
+  /// What guarded calls do to behaviours.
+  BehaviorUndo& undo() { return undo_; }
+
   /// Told of each error, once.
   void on_fault(std::function<void(const Behavior&)> hook) { on_fault_ = std::move(hook); }
   std::uint64_t state_hash(std::uint64_t start) const;
@@ -70,6 +75,7 @@ class BehaviorList {
  private:
   friend class Behavior;
   friend class BehaviorGroup;
+  friend class BehaviorUndo;
   /// One behaviour or one group.
   struct Entry {
     std::unique_ptr<Behavior> single;
@@ -84,8 +90,13 @@ class BehaviorList {
   void copy_values(const Behavior& from, Behavior& to);
   void say_fault(const Behavior& behavior) const;
   void note_made();
-  void remove_last();
+  void drop(Behavior& behavior);
+  void drop_group(BehaviorGroup& group);
+  void drop_last();
   void bury(std::unique_ptr<Behavior> behavior);
+  void bury(std::unique_ptr<BehaviorGroup> group);
+  void close_gap(std::size_t place);
+  Entry& open_gap(std::size_t place);
 
   World& world_;
   NodeId group_node_;
@@ -97,6 +108,7 @@ class BehaviorList {
   std::uint64_t structure_ = 0;
   std::uint64_t turn_ = 0;
   bool stepping_ = false;
+  BehaviorUndo undo_{*this};
   std::function<void(const Behavior&)> on_fault_;
 };
 

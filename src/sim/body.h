@@ -97,6 +97,7 @@ class Body {
   friend class World;
   friend class Behavior;
   friend class BehaviorList;
+  friend class BehaviorUndo;
   friend class WorldUndo;
   void keep();
   void build(const std::shared_ptr<const BodyModel>& model, const BuildOptions& options);

@@ -47,12 +47,14 @@ void WorldUndo::begin() {
   bodies_.clear();
   motions_.clear();
   reset_asked_ = world_.reset_asked_;
+  world_.behaviors_->undo().begin();
   world_.store_.begin_undo();
 }
 
 void WorldUndo::end() {
   active_ = false;
   world_.store_.end_undo();
+  world_.behaviors_->undo().end();
   for (Hidden& hidden : hidden_) {
     hidden.body.reset();
     world_.store_.drop_hidden(hidden.id);
@@ -61,9 +63,10 @@ void WorldUndo::end() {
 }
 
 void WorldUndo::take_back() {
+  // what is made or removed from here on is so for good
+  active_ = false;
   // first what was made and removed, so that the store finds again the things whose values it kept
   for (auto entry = entries_.rbegin(); entry != entries_.rend(); ++entry) entry->step(entry->owner, entry->value);
-  active_ = false;
   world_.store_.take_back();
   world_.reset_asked_ = reset_asked_;
 }
