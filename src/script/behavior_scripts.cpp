@@ -110,7 +110,8 @@ std::uint64_t BehaviorScripts::hash(std::uint64_t start) const {
 template <class Call>
 BehaviorFault BehaviorScripts::inside(Call call) {
   if (vm_ == nullptr) return {"the scene no longer names this type; name it once at the top level", "", 0};
-  for (const std::int32_t number : std::exchange(dropped_, {})) vm_->drop_behavior(number);
+  for (const std::int32_t number : dropped_) vm_->drop_behavior(number);
+  dropped_.clear();
   const std::int32_t outer = std::exchange(context_->answer.in_behavior, 1);
   BehaviorFault fault = call();
   context_->answer.in_behavior = outer;
