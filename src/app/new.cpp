@@ -22,6 +22,7 @@
 #include "base/embedded.h"
 #include "base/text.h"
 #include "script/files.h"
+#include "sim/behavior_type.h"
 
 namespace limber {
 
@@ -77,6 +78,7 @@ std::string filled(std::string_view text, std::string_view name) {
 int write_new(const fs::path& path, std::string_view text) {
   std::error_code fault;
   fs::create_directories(path.parent_path(), fault);
+  if (fault) return fault.value();
   const Descriptor file(open(path.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666));
   if (!file.open()) return errno;
   while (!text.empty()) {
@@ -93,14 +95,23 @@ int write_and_say(const fs::path& path, std::string_view text) {
   if (fault == EEXIST)
     return fail_new(kInput, fmt::format("{} is there already and stays as it is; choose another name", path.string()));
   if (fault != 0) {
-    return fail_new(kMachine, fmt::format("{} can't be written: {}; look at the folder's permissions", path.string(),
-                                          std::generic_category().message(fault)));
+    const bool by_path = fault == ENOTDIR || fault == ENAMETOOLONG || fault == ELOOP;
+    const bool full = fault == ENOSPC || fault == EDQUOT;
+    return fail_new(by_path ? kInput : kMachine,
+                    fmt::format("{} can't be written: {}; {}", path.string(), std::generic_category().message(fault),
+                                by_path ? "choose another place"
+                                : full  ? "make room on the disk"
+                                        : "look at the permissions of its folder"));
   }
   fmt::print("{}\n", printable(path.string()));
   return kFine;
 }
 
 int new_show(const std::string& folder) {
+  if (folder.empty() || printable(folder) != folder || folder.find_first_of("\n\t") != std::string::npos) {
+    return fail_new(kUsage,
+                    fmt::format("'{}' can't be a show's folder: its name is printable text; such as my_show", folder));
+  }
   std::error_code fault;
   const fs::path root(folder);
   if (fs::exists(root, fault) && !(fs::is_directory(root, fault) && fs::is_empty(root, fault)))
@@ -126,6 +137,27 @@ fs::path show_folder() {
   return !fault && fs::is_directory(show / "scripts", fault) ? show : fs::path();
 }
 
+// what speaks against a behaviour of this name in a show: by the naming rule it would be another type that is there
+std::string taken_type(const fs::path& show, std::string_view name) {
+  const BehaviorTypes built_in;
+  const auto is = [&](std::string_view type) {
+    return type == name ? fmt::format("'{}' is", name) : fmt::format("'{}' means '{}', which is", name, type);
+  };
+  if (const auto type = built_in.find(name)) return is(type->name) + " a built-in behavior type";
+  const std::string found = ScriptFiles((show / "scripts" / "scene.lua").string(), data_dir()).find_behavior(name);
+  if (found.empty()) return {};
+  const std::string type = fs::path(found).stem().string();
+  std::error_code fault;
+  const bool of_the_show = fs::equivalent(fs::path(found).parent_path(), show / "behaviors_lua", fault);
+  if (of_the_show) return type == name ? "" : fmt::format("{} there already: {}", is(type), found);
+  constexpr std::string_view kTwin = "lua_";
+  if (type.starts_with(kTwin) && built_in.find(type.substr(kTwin.size())) != nullptr) {
+    return fmt::format("{} a behavior that comes with Limber, and scenes count on it: {}", is(type), found);
+  }
+  fmt::print(stderr, "limber: new: note: in this show it takes the place of {}\n", printable(found));
+  return {};
+}
+
 int new_file(const NewCommand& command) {
   const bool scene = command.what == NewCommand::What::scene;
   const std::string_view kind = scene ? "scene" : "behavior";
@@ -142,6 +174,11 @@ int new_file(const NewCommand& command) {
   if (show.empty()) {
     return fail_new(
         kInput, "there is no show here: go into one (a folder that holds scripts/), or make one: limber new show DIR");
+  }
+  if (!scene) {
+    if (const std::string why = taken_type(show, name); !why.empty())
+      return fail_new(kInput,
+                      why + "; choose another name (case, underscores and a trailing \"behavior\" make no difference)");
   }
   const EmbeddedFile* const text = find_embedded(template_files(), scene ? "scene.lua" : "behavior.lua");
   LIMBER_CHECK(text != nullptr);

@@ -11,8 +11,8 @@ struct NewCommand {
   std::string name;  ///< Of a show: its folder.
 };
 
-/// Returns the exit code: 1 when something is there already, 2 for a name that can't be one, 3 when a file can't be
-/// written. [main]
+/// Returns the exit code: 1 when something is there already, or a behaviour's name is that of another type, 2 for a
+/// name that can't be one, 3 when a file can't be written. [main]
 int new_command(const NewCommand& command);
 
 }  // namespace limber

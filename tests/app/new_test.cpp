@@ -153,6 +153,85 @@ TEST(New, NamesAreChecked) {
   EXPECT_EQ(files, 1U);
 }
 
+TEST(New, ABehaviorIsNotCalledLikeAnotherType) {
+  const Folder folder;
+  folder.file("scripts/s.lua", "");
+  folder.file("behaviors_lua/Sway_Behavior.lua", "mine");
+  const fs::path root = folder.path();
+  const std::string cure = "; choose another name (case, underscores and a trailing \"behavior\" make no difference)\n";
+  const std::string twin = std::string(LIMBER_SOURCE_DIR) + "/behaviors_lua/lua_force.lua";
+  const struct {
+    const char* name;
+    std::string why;
+  } taken[] = {
+      {"force", "'force' is a built-in behavior type"},
+      {"for_ce", "'for_ce' means 'force', which is a built-in behavior type"},
+      {"force_behavior.lua", "'force_behavior' means 'force', which is a built-in behavior type"},
+      {"randomrotationtarget",
+       "'randomrotationtarget' means 'random_rotation_target', which is a built-in behavior type"},
+      {"cohesion", "'cohesion' is a built-in behavior type"},
+      {"lua_force", "'lua_force' is a behavior that comes with Limber, and scenes count on it: " + twin},
+      {"luaforce",
+       "'luaforce' means 'lua_force', which is a behavior that comes with Limber, and scenes count on it: " + twin},
+      {"sway",
+       "'sway' means 'Sway_Behavior', which is there already: " + (root / "behaviors_lua/Sway_Behavior.lua").string()},
+  };
+  for (const auto& each : taken) {
+    const Ran ran = run({"new", "behavior", each.name}, folder.path() + "/scripts");
+    EXPECT_EQ(ran.code, 1) << each.name;
+    EXPECT_EQ(ran.err, "limber: new: " + each.why + cure);
+    EXPECT_EQ(ran.out, "") << each.name;
+  }
+  std::size_t files = 0;
+  for ([[maybe_unused]] const auto& each : fs::directory_iterator(root / "behaviors_lua")) files++;
+  EXPECT_EQ(files, 1U);
+  // scenes have names of their own
+  EXPECT_EQ(run({"new", "scene", "force"}, folder.path()).code, 0);
+}
+
+TEST(New, WhatTakesThePlaceOfAShippedOneSaysSo) {
+  const Folder folder;
+  folder.file("scripts/s.lua", "");
+  const Ran ran = run({"new", "behavior", "breathe"}, folder.path());
+  EXPECT_EQ(ran.code, 0);
+  EXPECT_EQ(ran.err,
+            "limber: new: note: in this show it takes the place of " LIMBER_SOURCE_DIR "/behaviors_lua/breathe.lua\n");
+  EXPECT_EQ(run({"new", "behavior", "gust"}, folder.path()).err, "");
+}
+
+TEST(New, PlacesThatCantBeAreRefused) {
+  const Folder folder;
+  folder.file("scripts/s.lua", "");
+  folder.file("file", "mine");
+  const fs::path root = folder.path();
+  for (const char* name : {"", "my\nshow", "\x1b[2J", "\xff\xfe"}) {
+    const Ran ran = run({"new", "show", name}, folder.path());
+    EXPECT_EQ(ran.code, 2) << name;
+    EXPECT_NE(ran.err.find("can't be a show's folder: its name is printable text; such as my_show"), std::string::npos)
+        << ran.err;
+  }
+  // below a file, and of a name that no file system takes
+  Ran ran = run({"new", "show", "file/show"}, folder.path());
+  EXPECT_EQ(ran.code, 1);
+  EXPECT_NE(ran.err.find(" can't be written: Not a directory; choose another place\n"), std::string::npos) << ran.err;
+  ran = run({"new", "show", std::string(300, 'x')}, folder.path());
+  EXPECT_EQ(ran.code, 1);
+  EXPECT_NE(ran.err.find(" can't be written: File name too long; choose another place\n"), std::string::npos)
+      << ran.err;
+  // where nobody may make anything
+  ran = run({"new", "show", "/proc/limber_show"}, folder.path());
+  EXPECT_EQ(ran.code, 3);
+  EXPECT_NE(ran.err.find("/proc/limber_show/"), std::string::npos) << ran.err;
+  EXPECT_NE(ran.err.find("; look at the permissions of its folder\n"), std::string::npos) << ran.err;
+  // a folder that has the scene's name is not written over either
+  fs::create_directories(root / "scripts/taken.lua");
+  EXPECT_EQ(run({"new", "scene", "taken"}, folder.path()).code, 1);
+  EXPECT_EQ(content(root / "file"), "mine");
+  std::size_t files = 0;
+  for ([[maybe_unused]] const auto& each : fs::directory_iterator(root)) files++;
+  EXPECT_EQ(files, 2U) << "scripts and the file, nothing half made";
+}
+
 TEST(New, WithoutAShowThereIsNoPlaceForAScene) {
   const Folder folder;
   const Ran ran = run({"new", "scene", "dance"}, folder.path());
