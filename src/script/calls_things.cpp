@@ -30,6 +30,10 @@ std::int32_t item(ScriptContext& c, std::span<T* const> list, std::int32_t i) {
 std::int32_t list_at(ScriptContext& c, NodeId id, std::int32_t kind, std::int32_t i) {
   if (kind == bodies) return item(c, c.world->bodies(), i);
   if (kind == shapes) return item(c, c.world->shapes(), i);
+  if (kind == groups) {
+    const std::vector<BehaviorGroup*> all = c.world->behaviors().groups();
+    return item<BehaviorGroup>(c, all, i);
+  }
   if (const Behavior* behavior = behavior_of(c, id)) {
     c.world->behaviors().follow_bodies();
     if (kind == parts) return item(c, behavior->parts(), i);

@@ -22,8 +22,21 @@ state.hits = 4
 local hidden = 1
 )";
 
+constexpr const char* kSway = R"(
+return behavior {
+  params = { { "depth", 1, min = 0, max = 9 }, { "delay", vec3() } },
+  step = function(self) end,
+}
+)";
+constexpr const char* kHerd =
+    "return behavior { group = true, params = { { 'closeness', 1 } }, step = function() end }";
+
 struct Console : testing::Test {
-  Console() { EXPECT_EQ(stage.play(kArm), ""); }
+  explicit Console(const std::string& more = "") {
+    stage.write("behaviors_lua/sway.lua", kSway);
+    stage.write("behaviors_lua/herd.lua", kHerd);
+    EXPECT_EQ(stage.play(kArm + more), "");
+  }
 
   /// "kind: text" of what comes of it.
   std::string say(const std::string& text) {
@@ -42,6 +55,16 @@ struct Console : testing::Test {
   }
 
   Stage stage;
+};
+
+struct ConsoleOfBehaviors : Console {
+  ConsoleOfBehaviors()
+      : Console(R"(
+arm:add_behavior("sway", "to (and) fro")
+arm:add_behavior("random_force", "wind")
+sim:add_group_behavior("herd", "all of \"us\"")
+sim:add_group_behavior("cohesion", "together")
+)") {}
 };
 
 TEST_F(Console, ExpressionsHaveValues) {
@@ -182,6 +205,42 @@ TEST_F(Console, FollowsChains) {
   EXPECT_EQ(first_line(say("hit")), "error: console:1: there is no global 'hit'; did you mean 'bit'?");
 }
 
+TEST_F(ConsoleOfBehaviors, LooksThroughThemAndTheirGroups) {
+  EXPECT_EQ(words("arm:behavior('to (and) fro').de"), "delay depth") << "parameters of its file";
+  EXPECT_EQ(words("sim:body(\"arm\"):behavior('wind').rand_"), "rand_interval");
+  EXPECT_EQ(words("sim:find_body('arm'):behavior(1).delay."), "cross dot length lerp normalized x y z");
+  EXPECT_EQ(words("x = arm.behaviors[2].max_"), "max_amp max_dir");
+  EXPECT_EQ(words("arm:behavior('wind'):"), "joints motors parts remove");
+  EXPECT_EQ(words("arm:behavior('wind').body:part(-1):apply_f"), "apply_force");
+  EXPECT_EQ(words("arm:behavior('wind'):part"), "parts");
+  EXPECT_EQ(words("sim:group_behavior('together').max_d"), "max_dist");
+  EXPECT_EQ(words("sim:group_behavior(\"all of \\\"us\\\"\").clo"), "closeness");
+  EXPECT_EQ(words("sim:group_behavior(1).clo"), "closeness");
+  EXPECT_EQ(words("sim:body'arm':behavior"), "behavior behaviors") << "as Lua reads it, too";
+  EXPECT_EQ(words("sim:body( \"arm\" ) :beh"), words("unknown_call():beh")) << "a blank ends what is looked at";
+  EXPECT_EQ(words("sim:body('arm'):part('tip').lin"), "linear_damping linear_velocity");
+  EXPECT_EQ(words("arm:behavior('"), "all of \"us\" arm ball base hinge tip to (and) fro together wind");
+  // one that is not there: what any thing has
+  EXPECT_EQ(words("arm:behavior('none').pos"), words("unknown_call().pos"));
+  EXPECT_EQ(words("sim:group_behavior('none').pos"), words("unknown_call().pos"));
+  EXPECT_EQ(say("pets = { ['big one'] = arm, { arm } }"), "done");
+  EXPECT_EQ(words("pets['big one']:behavior('wind').rand_"), "rand_interval");
+  EXPECT_EQ(words("pets[1][1].self_"), "self_collision");
+}
+
+TEST_F(Console, LooksThroughLookUpsOnly) {
+  const std::string any = words("unknown_call().pos");
+  // none of these is called: what they make or do would be seen
+  for (const char* call : {"sim:add_body('new')", "arm:copy('twin')", "arm:remove()", "arm:reset()", "f('x')",
+                           "sim:f(1)", "t:f('x')", "sim:every('1')", "sim:body(f('arm'))", "sim:body('arm' .. f())"}) {
+    EXPECT_EQ(say("function f() hit = true return arm end t = { f = f, body = f }"), "done");
+    EXPECT_EQ(words(std::string(call) + ".pos"), any) << call;
+  }
+  EXPECT_EQ(words("t:body('arm').pos"), any) << "a method of the scene's own";
+  EXPECT_EQ(say("#sim.bodies"), "value: 1");
+  EXPECT_EQ(first_line(say("hit")).find("error: console:1: there is no global 'hit'"), 0u);
+}
+
 TEST_F(Console, CompletesNamesOfThingsInQuotes) {
   EXPECT_EQ(words("sim:body(\""), "arm ball base hinge tip");
   EXPECT_EQ(words("arm:part('t"), "tip");
@@ -196,7 +255,12 @@ TEST_F(Console, CompletionTakesAnything) {
                           "\xff\xfe.x", "sim:body(sim:body('arm')).", "arm.parts[9].", "[1].x"}) {
     EXPECT_EQ(stage.scene.complete(odd).kind, Kind::names) << odd;
   }
-  EXPECT_EQ(stage.scene.complete(std::string(kMostEvaluated, '.')).kind, Kind::names);
+  for (const char* piece : {".", "()", "[]", "''", "(' ')", "\\'", "a:b(", ") ", "[1]"}) {
+    std::string much;
+    while (much.size() < kMostEvaluated - 8) much += piece;
+    EXPECT_EQ(stage.scene.complete(much).kind, Kind::names) << piece;
+    EXPECT_EQ(stage.scene.complete(much + ".x").kind, Kind::names) << piece;
+  }
   EXPECT_TRUE(stage.logged().empty());
 }
 

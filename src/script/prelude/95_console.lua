@@ -101,9 +101,11 @@ function P.entry.evaluate(text)
   return result and "value" or "done", result or ""
 end
 
--- Completion. A chain such as sim:body("arm").root is followed without running anything of the scene's.
-local lookups = { body = true, find_body = true, part = true, joint = true, motor = true }
-local class_lists = { bodies = true, parts = true, joints = true, motors = true }
+-- Completion. A chain such as sim:body("arm").root is followed without running anything of the scene's: members are read,
+-- and of the methods those are called that only look something up.
+local lookups = { body = true, find_body = true, part = true, joint = true, motor = true, behavior = true,
+  group_behavior = true }
+local class_lists = { bodies = true, parts = true, joints = true, motors = true, behaviors = true }
 
 local function member_of(value, key)
   local class = P.class_of(value)
@@ -111,19 +113,43 @@ local function member_of(value, key)
     local ok, found = pcall(class.getters[key] or error, value)
     return ok and found or nil
   end
-  if istype(P.L, value) then return P.items_of(value)[tonumber(key)] end
+  if istype(P.L, value) then return P.items_of(value)[key] end
   if value == P.params then
     local ok, found = pcall(function() return value[key] end)
     return ok and found or nil
   end
-  return type(value) == "table" and rawget(value, tonumber(key) or key) or nil
+  return type(value) == "table" and rawget(value, key) or nil
 end
 
 local function looked_up(value, name, argument)
   local class = P.class_of(value)
   if not (class and lookups[name] and class.methods[name]) then return nil end
-  local ok, found = pcall(class.methods[name], value, tonumber(argument) or argument)
+  local ok, found = pcall(class.methods[name], value, argument)
   return ok and found or nil
+end
+
+-- the text in the quotes that a text begins with, and what stands behind them
+local function quoted(text)
+  local quote = text:match("^[\"']")
+  local at = 2
+  while quote and at <= #text do
+    local c = text:sub(at, at)
+    if c == quote then return (text:sub(2, at - 1):gsub("\\(.)", "%1")), text:sub(at + 1) end
+    at = at + (c == "\\" and 2 or 1)
+  end
+end
+
+-- the key in brackets, or the argument in parentheses, that a text begins with, and what stands behind: text or a number
+local function enclosed(text, open, close)
+  local inside = text:match("^%" .. open .. "%s*(.*)$")
+  if not inside then return nil end
+  local key, after = quoted(inside)
+  if not key then
+    key, after = inside:match("^(%-?%d+)(.*)$")
+    key = tonumber(key)
+  end
+  after = after and after:match("^%s*%" .. close .. "(.*)$")
+  return after and key, after
 end
 
 -- the thing that a chain leads to, nil when that is not known
@@ -132,27 +158,42 @@ local function follow(chain)
   local value = name and rawget(P.env, name)
   while value ~= nil and rest ~= "" do
     local key, after = rest:match("^%.([%a_][%w_]*)(.*)$")
-    if not key then key, after = rest:match("^%[(%d+)%](.*)$") end
+    if not key then key, after = enclosed(rest, "[", "]") end
     if key then
       value, rest = member_of(value, key), after
     else
       local method, argument
-      method, argument, after = rest:match("^:([%a_][%w_]*)%(%s*[\"']?([^\"'()]*)[\"']?%s*%)(.*)$")
+      method, after = rest:match("^:([%a_][%w_]*)(.*)$")
       if not method then return nil end
+      local call = after
+      argument, after = enclosed(call, "(", ")")
+      if not argument then argument, after = quoted(call) end
+      if not argument then return nil end
       value, rest = looked_up(value, method, argument), after
     end
   end
   return value
 end
 
--- the chain that a text ends with: back over names, dots, colons and whole brackets
+-- where the quotes open that end at a place; before the text when they do not
+local function quote_before(text, at)
+  local quote = text:sub(at, at)
+  repeat at = at - 1 until at <= 0 or text:sub(at, at) == quote and text:sub(at - 1, at - 1) ~= "\\"
+  return at
+end
+
+-- the chain that a text ends with: back over names, dots, colons, quotes and whole brackets
 local function chain_at_end(text)
   local at = #text
   while at > 0 do
     local c = text:sub(at, at)
     if c == ")" or c == "]" then
       local open = c == ")" and "(" or "["
-      repeat at = at - 1 until at <= 0 or text:sub(at, at) == open
+      repeat at = at - 1 until not text:find("^%s", at)
+      if text:find("^[\"']", at) then at = quote_before(text, at) end
+      while at > 0 and text:sub(at, at) ~= open do at = at - 1 end
+    elseif c == '"' or c == "'" then
+      at = quote_before(text, at)
     elseif not c:find("[%w_.:]") then
       break
     end
@@ -219,9 +260,9 @@ local function living_names()
   local function add(list)
     for _, item in ipairs(P.items_of(list)) do words[P.names[item]] = true end
   end
-  for kind = 0, 4, 4 do add(P.list_of(P.sim, kind)) end
+  for _, kind in ipairs { 0, 4, 6 } do add(P.list_of(P.sim, kind)) end
   for _, body in ipairs(P.items_of(P.list_of(P.sim, 0))) do
-    for kind = 1, 3 do add(P.list_of(body, kind)) end
+    for _, kind in ipairs { 1, 2, 3, 5 } do add(P.list_of(body, kind)) end
   end
   return words
 end
