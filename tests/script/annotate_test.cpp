@@ -114,6 +114,54 @@ TEST_F(Annotate, ValuesHaveTheMembersThatAreSaid) {
   }
 }
 
+TEST_F(Annotate, BehavioursHaveTheMembersThatAreSaid) {
+  const auto said = [&](const char* name) {
+    std::set<std::string> members;
+    for (const auto& [field, about] : read.classes[name].fields) members.insert(field);
+    for (const auto& [method, function] : read.classes[name].functions) members.insert(method);
+    return members;
+  };
+  // a step that reads each member that its self is said to have
+  std::string step = "step = function(self)\n";
+  for (const std::string& member : said("behavior_self")) {
+    step += "print('" + member + "', (pcall(function() return self." + member + " end)))\n";
+  }
+  step += "print(select(2, pcall(function() return self.zzzzz end))) end }";
+  Stage stage;
+  stage.write("behaviors_lua/bare.lua", "return behavior { " + step);
+  stage.write("behaviors_lua/bare_group.lua", "return behavior { group = true, " + step);
+  ASSERT_EQ(stage.play("body = sim:add_body('b') body:add_part('p', sim:add_sphere_shape('s', 1))\n"
+                       "all = sim:add_group_behavior('bare_group', 'all') one = body:add_behavior('bare', 'one')",
+                       1),
+            "");
+  const std::size_t count = said("behavior_self").size() + 1;
+  ASSERT_GT(count, 13u);
+  ASSERT_EQ(stage.host.printed.size(), 2 * count);
+  for (std::size_t i = 0; i < 2 * count; i++) {
+    const std::string& line = stage.host.printed[i];
+    if (i % count + 1 < count) {
+      const bool of_groups = line.starts_with("neighbor");
+      EXPECT_TRUE(line.ends_with(i >= count && of_groups ? "\tfalse" : "\ttrue")) << line;
+      continue;
+    }
+    const std::size_t list = line.find("there are: ");
+    ASSERT_NE(list, std::string::npos) << line;
+    for (const std::string_view member : split(std::string_view(line).substr(list + 11), ' ')) {
+      const std::string name(member.substr(0, member.find(',')));
+      EXPECT_TRUE(name == "…" || said("behavior_self").contains(name)) << name;
+    }
+  }
+  // what the console would complete is all that a handle has
+  for (const auto& [thing, name] : {std::pair{"one", "behavior"}, std::pair{"all", "behavior_group"}}) {
+    std::set<std::string> real;
+    for (const char* separator : {".", ":"}) {
+      const std::string words = stage.scene.complete(std::string(thing) + separator).text;
+      for (const std::string_view word : split(words, '\n')) real.emplace(word);
+    }
+    EXPECT_EQ(said(name), real) << name;
+  }
+}
+
 TEST_F(Annotate, EveryRowHasTypeUnitRangeDefaultAndMeaning) {
   const std::pair<const char*, const Table*> kClasses[] = {{"sim", &World::table()},   {"body", &Body::table()},
                                                            {"part", &Part::table()},   {"joint", &Joint::table()},

@@ -18,6 +18,7 @@ function behavior(definition) end
 ---@class behavior_self
 ---@field active boolean
 ---@field name string # read-only.
+---@field alive boolean # read-only. Whether it is still attached.
 ---@field type string # read-only.
 ---@field body body # read-only.
 ---@field parts part_list # read-only.
@@ -49,6 +50,7 @@ function behavior_self_:neighbors(part, radius) end
 ---@field body body # read-only.
 ---@field active boolean # default true. Setting it, to whatever, lets one that failed try again.
 ---@field error? string # read-only. Why it rests although it is active.
+---@field time number # read-only, µs. What the last tick spent on it.
 ---@field parts part_list # read-only.
 ---@field joints joint_list # read-only.
 ---@field motors motor_list # read-only.
@@ -70,7 +72,8 @@ function behavior_:remove() end
 ---@field name string # read-only.
 ---@field alive boolean # read-only.
 ---@field type string # read-only.
----@field active boolean
+---@field active boolean # default true. Setting it sets that of every member.
+---@field time number # read-only, µs. What the last tick spent on all of it.
 ---@field [string] any # Its parameters: what is written goes to every member.
 local behavior_group_ = {}
 
