@@ -40,6 +40,48 @@ TEST(Errors, SyntaxErrorsHaveTheirLine) {
             "scripts/scene.lua:2: unexpected symbol near '='\n  2 | local y = = 2");
 }
 
+TEST(Errors, AMissingEndIsLookedForWhereItShouldBe) {
+  const auto hint = [](const std::string& text) {
+    const std::string fault = error_of(text);
+    const std::size_t at = fault.find("; ");
+    return at == std::string::npos ? "none: " + fault : fault.substr(at + 2);
+  };
+  // the compiler itself stumbles over the comma
+  EXPECT_EQ(
+      error_of("t = {\n  step = function(self)\n    for i = 1, 3 do\n      print(i)\n  end,\n}"),
+      "scripts/scene.lua:5: unexpected symbol near ','; the 'end' in line 5 closes the 'for' of line 3: is an 'end' "
+      "missing between them?");
+  const std::string missing = ": is an 'end' missing between them?";
+  EXPECT_EQ(hint("sim:on_step(function()\n  if a then\n    b = 1\nend)\nsim:after(1, print)"),
+            "the 'end' in line 4 closes the 'if' of line 2" + missing);
+  EXPECT_EQ(hint("local function f()\n\twhile x do\n\t\tx = 1\nend\nprint(1)\n"),
+            "the 'end' in line 4 closes the 'while' of line 2" + missing);
+  EXPECT_EQ(hint("local function f()\n  local g = function()\n  return 1\nend\nprint(1)\n"),
+            "the 'end' in line 4 closes the 'function' of line 2" + missing);
+  EXPECT_EQ(hint("if a then\n  b = 1\nend\nend"), "the 'end' in line 4 closes nothing: one is too many");
+  EXPECT_EQ(hint("repeat\n  for i = 1, 2 do\n    x = i\nuntil x\n"),
+            "the 'until' in line 4 closes the 'for' of line 2" + missing);
+  // words in comments and texts are none, and what stands well is not blamed
+  EXPECT_EQ(hint("-- end\n--[==[ end\nend ]==]\nx = 'end' .. \"\\\" end\" .. [[\nend]]\nfor i = 1, 2 do\n  if x then "
+                 "y() end\nend\n"
+                 "x = = 2"),
+            "none: scripts/scene.lua:9: unexpected symbol near '='");
+  EXPECT_EQ(
+      hint(
+          "local function f() if a then b() else c() end end for i in (function() return pairs end)() do end\nx = = 2"),
+      "none: scripts/scene.lua:2: unexpected symbol near '='");
+  EXPECT_EQ(hint("x = 'open"), "none: scripts/scene.lua:1: unfinished string near '<eof>'");
+}
+
+TEST(Errors, AMissingCommaIsLookedFor) {
+  EXPECT_EQ(error_of("params {\n  { 'a', 1 }\n  { 'b', 2 },\n}"),
+            "scripts/scene.lua:3: '}' expected (to close '{' at line 1) near '{'; is a comma missing before it?");
+  EXPECT_EQ(error_of("params {\n  { 'a', 1, max = 2 doc = 'x' },\n}"),
+            "scripts/scene.lua:2: '}' expected near 'doc'; is a comma missing before it?");
+  EXPECT_EQ(error_of("t = {\n  a = 1\n  b = 2,\n}"),
+            "scripts/scene.lua:3: '}' expected (to close '{' at line 1) near 'b'; is a comma missing before it?");
+}
+
 TEST(Errors, WhatIsThrownMayBeAnything) {
   EXPECT_EQ(error_of("error({})"), "scripts/scene.lua:1: an error that is no text but a table");
   EXPECT_EQ(error_of("error()"), "scripts/scene.lua:1: an error that is no text but a nil");
