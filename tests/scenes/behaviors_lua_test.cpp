@@ -1,4 +1,5 @@
 // The behaviours that ship in behaviors_lua/ beside the twins: each does what its first lines say.
+#include <algorithm>
 #include <cmath>
 #include <complex>
 
@@ -40,6 +41,29 @@ arm:add_behavior("breathe", "breath", { rate = 0.3, depth = 0.4, lag = 0.7, offs
   player.engine->tick();
   EXPECT_LT(std::abs(player.value("/physics/body/arm/motor/joint_1/target") - before),
             0.4 * 2 * kPi * 2 * kTick + 1e-9);
+}
+
+TEST(Breathe, JointsSwingAsOftenAndAsDeep) {
+  Ballet ballet(R"(
+sim.gravity = vec3()
+local arm = sim:load_urdf("urdf/arm6.urdf", { name = "arm" })
+arm:add_behavior("breathe", "breath", { rate = 0.4, depth = 0.35, motors = "joint_2" })
+)");
+  Player& player = ballet.player;
+  const Joint& joint = *player.body("arm").find_joint("joint_2");
+  player.play(2.5);
+  double deepest = 0, before = joint.value();
+  std::vector<double> rises;  // when it passes the middle on its way up, s
+  for (int tick = 0; tick < 900; tick++) {
+    player.engine->tick();
+    const double now = joint.value();
+    if (before < 0 && now >= 0) rises.push_back((tick - now / (now - before)) * kTick);
+    deepest = std::max(deepest, std::abs(now));
+    before = now;
+  }
+  ASSERT_EQ(rises.size(), 6u);
+  EXPECT_NEAR((rises.back() - rises.front()) / 5, 1 / 0.4, 0.01);
+  EXPECT_NEAR(deepest, 0.35, 0.01);
 }
 
 // how far a joint's swing of that frequency lags behind a cosine, from its angles at each tick
@@ -186,7 +210,15 @@ end)
   EXPECT_GT(off_upright(), 60);
 }
 
-TEST(Flock, SixtyBodiesWithHeadingsOfTheirOwnComeToShareOne) {
+// sixty birds with headings of their own, after so many seconds
+struct Birds {
+  double polarisation = 0;  // 1: all fly one way; about 0.1: each its own
+  double speed = 0;         // mean, m/s
+  double nearest = 1e9;     // of any two, m
+  double spread = 0;        // mean distance from their middle, m
+};
+
+Birds flown(const std::string& opts, double seconds) {
   Ballet ballet(R"(
 sim.gravity = vec3()
 local ball = sim:add_sphere_shape("ball", 0.05)
@@ -195,28 +227,53 @@ for i = 1, 60 do
   birds[i] = sim:add_body("bird" .. i)
   birds[i]:add_part("bird", ball, { mass = 0.1, position = rng:uniform(vec3(-1, -1, -1), vec3(1, 1, 1)) * 1.5 })
 end
-sim:add_group_behavior("flock", "swarm", { bodies = "bird*" })
+sim:add_group_behavior("flock", "swarm", { bodies = "bird*", )" +
+                opts + R"( })
 sim:on_start(function() for _, bird in ipairs(birds) do bird.linear_velocity = rng:direction() end end)
 )");
-  Player& player = ballet.player;
-  // 1: all fly one way; about 0.1: each its own
-  const auto polarisation = [&] {
-    Vec3 sum(0);
-    for (const auto& bird : player.world().bodies()) sum += normalized(bird->root()->linear_velocity());
-    return glm::length(sum) / 60;
-  };
-  EXPECT_LT(polarisation(), 0.35);
-  player.play(20);
-  EXPECT_GT(polarisation(), 0.9);
-  // at the speed that they like, and not in one heap
-  double nearest = 100;
-  for (const auto& a : player.world().bodies()) {
-    EXPECT_NEAR(glm::length(a->root()->linear_velocity()), 1, 0.3);
-    for (const auto& b : player.world().bodies()) {
-      if (a != b) nearest = std::min(nearest, glm::distance(a->root()->center(), b->root()->center()));
+  ballet.player.play(seconds);
+  Birds now;
+  const auto& bodies = ballet.player.world().bodies();
+  Vec3 way(0), middle(0);
+  for (const auto& bird : bodies) {
+    way += normalized(bird->root()->linear_velocity()) / 60.0;
+    middle += bird->root()->center() / 60.0;
+    now.speed += glm::length(bird->root()->linear_velocity()) / 60;
+  }
+  now.polarisation = glm::length(way);
+  for (const auto& a : bodies) {
+    now.spread += glm::distance(a->root()->center(), middle) / 60;
+    for (const auto& b : bodies) {
+      if (a != b) now.nearest = std::min(now.nearest, glm::distance(a->root()->center(), b->root()->center()));
     }
   }
-  EXPECT_GT(nearest, 0.1);
+  return now;
+}
+
+TEST(Flock, BirdsWithHeadingsOfTheirOwnComeToShareOne) {
+  const Birds at_first = flown("", 0.02), later = flown("", 20);
+  EXPECT_LT(at_first.polarisation, 0.35);
+  EXPECT_GT(later.polarisation, 0.9);
+  EXPECT_NEAR(later.speed, 1, 0.1);
+  EXPECT_GT(later.nearest, 0.1);
+  EXPECT_LT(later.spread, 2 * at_first.spread);
+}
+
+// what each rule gives is lost without it
+TEST(Flock, WithoutAlignmentTheyGoTheirOwnWays) {
+  const Birds birds = flown("alignment = 0", 20);
+  EXPECT_LT(birds.polarisation, 0.6);
+}
+
+TEST(Flock, WithoutCohesionTheyScatter) {
+  const Birds with = flown("", 20), without = flown("cohesion = 0", 20);
+  EXPECT_GT(without.spread, 3 * with.spread);
+}
+
+TEST(Flock, WithoutSeparationTheyHuddle) {
+  const Birds with = flown("", 20), without = flown("separation = 0", 20);
+  EXPECT_LT(without.spread, 0.5 * with.spread);
+  EXPECT_LT(without.nearest, with.nearest);
 }
 
 // each says what it is for, and what each parameter means

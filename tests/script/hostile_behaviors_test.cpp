@@ -125,6 +125,66 @@ TEST_P(HostileBehaviors, AreSuspendedAloneAndLeaveNoTrace) {
 INSTANTIATE_TEST_SUITE_P(, HostileBehaviors, ::testing::ValuesIn(kHostile),
                          [](const auto& info) { return std::string(info.param.name); });
 
+// its file is saved anew, and loaded by a scene beside
+void mend(BehaviorStage& stage, ScriptHost& host, std::unique_ptr<Scene>& beside, const std::string& text) {
+  stage.write("behaviors_lua/test.lua", text);
+  stage.write("scripts/next.lua", "sim:add_group_behavior('test', 'next', { bodies = 'nobody*' })");
+  beside = std::make_unique<Scene>(stage.world, host, SceneOptions{});
+  const Result<void> ran = beside->run((stage.folder / "scripts" / "next.lua").string());
+  ASSERT_TRUE(ran.ok()) << ran.error();
+  stage.world.behaviors().remove_group(*stage.world.behaviors().find_group("next"));
+  stage.world.behaviors().renew("test");
+}
+
+TEST_P(HostileBehaviors, AreRevivedByAMendedFile) {
+  const Hostile& hostile = GetParam();
+  SceneOptions options;
+  options.limits.call_ms = 4 * kBudgetScale;
+  options.limits.memory = std::size_t{24} << 20u;
+  BehaviorStage stage(options, true);
+  stage.write("behaviors_lua/test.lua", file(hostile));
+  ASSERT_EQ(stage.play(scene(), 32), "");
+  const auto bad = [&]() -> const Behavior& { return *stage.world.find_body("bad")->find_behavior("bad"); };
+  ASSERT_NE(bad().error(), "");
+  RecordingHost host;
+  std::unique_ptr<Scene> beside;
+  mend(stage, host, beside,
+       "return behavior { group = true, params = { { 'push', 1, unit = 'ms' }, { 'hostile', true } },\n"
+       "step = function(self) if self.hostile then print(self.body.name) end end }");
+  stage.tick(2);
+  EXPECT_EQ(bad().error(), "");
+  EXPECT_EQ(host.printed, (std::vector<std::string>{"bad", "bad"}));
+}
+
+TEST(HostileBehaviorsInMigrate, AreSuspendedAloneAndKeepTheirState) {
+  SceneOptions options;
+  options.limits.call_ms = 4 * kBudgetScale;
+  const std::string good =
+      "return behavior { group = true, params = { { 'push', 1, unit = 'ms' }, { 'hostile', true } },\n"
+      "start = function(self) self.state.n = 0 end,\n"
+      "step = function(self) self.state.n = self.state.n + 1 if self.hostile then print(self.state.n) end end,\n";
+  for (const std::string migrate :
+       {"while true do end", "error('no')", "local t = {} while true do t[#t + 1] = #t .. '' end"}) {
+    SCOPED_TRACE(migrate);
+    BehaviorStage stage(options, true);
+    stage.write("behaviors_lua/test.lua", good + "}");
+    ASSERT_EQ(stage.play(scene(), 3), "");
+    RecordingHost host, later_host;
+    std::unique_ptr<Scene> beside, later;
+    mend(stage, host, beside,
+         good + "migrate = function(self, old)\n  if self.hostile then " + migrate + " end\nreturn old end }");
+    stage.tick(2);
+    const Behavior* bad = stage.world.find_body("bad")->find_behavior("bad");
+    EXPECT_EQ(bad->fault().line, 5) << bad->error();
+    EXPECT_EQ(bad->fault().file, "behaviors_lua/test.lua");
+    EXPECT_EQ(stage.world.find_body("other")->find_behavior("bad")->error(), "");
+    EXPECT_EQ(host.printed, std::vector<std::string>{});
+    mend(stage, later_host, later, good + "}");
+    stage.tick();
+    EXPECT_EQ(later_host.printed, std::vector<std::string>{"4"}) << "it goes on with the state that it had";
+  }
+}
+
 TEST(HostileBehaviorsInStart, AreSuspendedAloneToo) {
   SceneOptions options;
   options.limits.call_ms = 4 * kBudgetScale;

@@ -46,6 +46,23 @@ TEST(Prediction, ATensorAnswersTorqueAboutEachAxis) {
   }
 }
 
+TEST(Prediction, APartTellsItsMomentsAndTheirAxes) {
+  const Mat3 tensor(Vec3(0.5, 0.08, -0.05), Vec3(0.08, 0.6, 0.1), Vec3(-0.05, 0.1, 0.4));
+  Stage s;
+  Part& part = *(**s.world.add_body(model_with_tensor(tensor, 2, {0.1, -0.2, 0.3}), "thing", {})).root();
+  const Quat turn = quat_axis(normalized({1, -2, 0.5}), 0.9);
+  part.set_pose({{1, 2, 3}, turn});
+  s.set(part.id(), "mass", {6});  // its moments grow with it
+  double moments[3], q[4];
+  s.store.get(part.id(), Part::table().at("inertia"), moments);
+  s.store.get(part.id(), Part::table().at("principal_axes"), q);
+  const Mat3 axes = glm::mat3_cast(Quat(q[3], q[0], q[1], q[2]));
+  const Mat3 in_world = axes * Mat3(moments[0], 0, 0, 0, moments[1], 0, 0, 0, moments[2]) * glm::transpose(axes);
+  const Mat3 r = glm::mat3_cast(turn);
+  const Mat3 expected = r * (3.0 * tensor) * glm::transpose(r);
+  for (int i = 0; i < 3; i++) EXPECT_LT(glm::length(in_world[i] - expected[i]), 1e-6) << i;
+}
+
 TEST(Prediction, AForceAtAPointTurnsByItsArm) {
   Stage s;
   Part& box = s.lone(box_model({0.4, 0.6, 0.2}), 3, {{1, 1, 1}, quat_identity()});
