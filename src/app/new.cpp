@@ -101,7 +101,7 @@ int write_and_say(const fs::path& path, std::string_view text) {
                     fmt::format("{} can't be written: {}; {}", path.string(), std::generic_category().message(fault),
                                 by_path ? "choose another place"
                                 : full  ? "make room on the disk"
-                                        : "look at the permissions of its folder"));
+                                        : "look at the folder's permissions"));
   }
   fmt::print("{}\n", printable(path.string()));
   return kFine;

@@ -222,7 +222,7 @@ TEST(New, PlacesThatCantBeAreRefused) {
   ran = run({"new", "show", "/proc/limber_show"}, folder.path());
   EXPECT_EQ(ran.code, 3);
   EXPECT_NE(ran.err.find("/proc/limber_show/"), std::string::npos) << ran.err;
-  EXPECT_NE(ran.err.find("; look at the permissions of its folder\n"), std::string::npos) << ran.err;
+  EXPECT_NE(ran.err.find("; look at the folder's permissions\n"), std::string::npos) << ran.err;
   // a folder that has the scene's name is not written over either
   fs::create_directories(root / "scripts/taken.lua");
   EXPECT_EQ(run({"new", "scene", "taken"}, folder.path()).code, 1);
