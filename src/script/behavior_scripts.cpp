@@ -130,6 +130,25 @@ BehaviorFault BehaviorScripts::step(std::int32_t number, double dt) {
   return inside([&] { return vm_->step_behavior(number, dt); });
 }
 
+std::size_t BehaviorScripts::step_all(std::span<Behavior* const> all, double dt) {
+  row_ = {all, 0, 0};
+  BehaviorFault fault = inside([&] { return vm_->step_behaviors(dt, row_.stepping); });
+  if (fault.text.empty()) return row_.next;
+  // without a Vm nobody came to step
+  if (row_.next == 0) row_.next = 1;
+  all[row_.next - 1]->fail(std::move(fault));
+  return row_.next;
+}
+
+std::int32_t BehaviorScripts::next_step() {
+  if (row_.stepping != 0 && !vm_->guard().next_call()) return 0;
+  row_.stepping = 0;
+  while (row_.next < row_.all.size() && !row_.all[row_.next]->runs()) row_.next++;
+  if (row_.next == row_.all.size()) return 0;
+  row_.stepping = static_cast<const LuaBehavior&>(*row_.all[row_.next++]).number();
+  return row_.stepping;
+}
+
 BehaviorFault BehaviorScripts::restore(std::int32_t number, std::string_view state, bool migrate) {
   return inside([&] { return vm_->restore_behavior(number, state, migrate); });
 }

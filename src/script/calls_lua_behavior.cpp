@@ -82,6 +82,8 @@ std::int32_t behavior_due(void* c, std::int32_t slot, std::int32_t generation, s
   return behavior->due(behavior->type().table->row(static_cast<std::uint32_t>(row))) ? 1 : 0;
 }
 
+std::int32_t behavior_next(void* c) { return context_of(c).behaviors->next_step(); }
+
 LimberWalk* walks(void* c) { return context_of(c).walks.data(); }
 
 std::int32_t neighbors(void* c, std::int32_t slot, std::int32_t generation, std::int32_t part_slot,

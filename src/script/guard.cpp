@@ -138,6 +138,20 @@ void Guard::begin(Kind kind) {
   watch_.begin(static_cast<std::int64_t>(budget * kMillisecond));
 }
 
+bool Guard::next_call() {
+  if (reason_ != Reason::none || memory_.used() > memory_.cap() / 2) return false;
+  watch_.end();
+  context_.end_call(true);
+  context_.begin_call();
+  memory_.begin_call();
+  watch_.begin(static_cast<std::int64_t>(limits_.call_ms * kMillisecond));
+  return true;
+}
+
+void Guard::blame_function() {
+  if (fault_.line == 0) place_at_function(lua_gettop(state_));
+}
+
 void Guard::end() {
   watch_.end();
   memory_.end_call();

@@ -44,6 +44,11 @@ class Guard {
   /// is taken back, what it wanted to send is not sent. Not from inside another guarded call.
   bool call(int arguments, int results, Kind kind = Kind::call);
   const ScriptFault& fault() const { return fault_; }
+  /// In the middle of a call: what it did until here was good and stays, and another begins, with a budget of its own.
+  /// False: it is to be stopped, or has much garbage, and should end first.
+  bool next_call();
+  /// A fault that tells no place is that of the function on top of the stack.
+  void blame_function();
 
   /// Registry references of functions of the prelude: the message handler; the fault of a call that was stopped
   /// without an error coming out; what is to be done after a failure.

@@ -43,6 +43,23 @@ void LuaBehavior::step(double dt) {
   if (started_ && ready()) well(scripts_->step(number_, dt));
 }
 
+void LuaBehavior::step_group(std::span<Behavior* const> members, double dt) {
+  const auto joins = [&](const Behavior* member) {
+    const auto& other = static_cast<const LuaBehavior&>(*member);
+    return other.only_steps() && other.scripts_ == scripts_ && other.file_ == file_;
+  };
+  for (std::size_t i = 0; i < members.size();) {
+    std::size_t end = i;
+    while (end < members.size() && joins(members[end])) end++;
+    if (end > i) {
+      i += scripts_->step_all(members.subspan(i, end - i), dt);
+    } else {
+      if (members[i]->runs()) members[i]->step(dt);
+      i++;
+    }
+  }
+}
+
 void LuaBehavior::take_over(Behavior& before) {
   auto* const old = dynamic_cast<LuaBehavior*>(&before);
   if (old == nullptr) return;

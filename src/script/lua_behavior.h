@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 
 #include "script/behavior_scripts.h"
@@ -20,6 +21,8 @@ class LuaBehavior final : public Behavior {
 
   void start() override;
   void step(double dt) override;
+  /// Those that need no more than their step are stepped in one call of the Vm.
+  void step_group(std::span<Behavior* const> members, double dt) override;
   /// Takes the state of the one before it, through `migrate` when the file has changed. What can't be kept is said, and
   /// the state starts anew.
   void take_over(Behavior& before) override;
@@ -28,8 +31,12 @@ class LuaBehavior final : public Behavior {
   Result<std::string> state() const;
   const BehaviorFile& file() const { return scripts_->file(file_); }
 
+  /// Its number in the Vm; 0: not there yet.
+  std::int32_t number() const { return number_; }
+
  private:
   bool ready();
+  bool only_steps() const { return started_ && number_ != 0 && !inherited_; }
   bool well(BehaviorFault fault);
 
   /// A state on its way from another instance, and the text of the file whose it was.

@@ -177,6 +177,7 @@ void Vm::keep_entries() {
     renew_behavior_ = keep("renew_behavior");
     restore_behavior_ = keep("restore_behavior");
     migrated_behavior_ = keep("migrated_behavior");
+    step_behaviors_ = keep("step_behaviors");
     behavior_state_ = keep("behavior_state");
     drop_behavior_ = keep("drop_behavior");
     behavior_self_ = keep("behavior_self");

@@ -47,6 +47,9 @@ class Vm {
   std::int32_t make_behavior(std::int32_t file, NodeId id);
   BehaviorFault start_behavior(std::int32_t number);
   BehaviorFault step_behavior(std::int32_t number, double dt);
+  /// Steps the instances that BehaviorScripts::next_step names, until it names none or one fails; `stepping` is the one
+  /// at hand.
+  BehaviorFault step_behaviors(double dt, const std::int32_t& stepping);
   BehaviorFault restore_behavior(std::int32_t number, std::string_view state, bool migrate);
   Result<std::string> behavior_state(std::int32_t number);
   void drop_behavior(std::int32_t number);
@@ -99,6 +102,7 @@ class Vm {
   int renew_behavior_ = -1;
   int restore_behavior_ = -1;
   int migrated_behavior_ = -1;
+  int step_behaviors_ = -1;
   int behavior_state_ = -1;
   int drop_behavior_ = -1;
   int behavior_self_ = -1;  // tables by the number of the instance

@@ -67,6 +67,21 @@ BehaviorFault Vm::step_behavior(std::int32_t number, double dt) {
   return fault;
 }
 
+BehaviorFault Vm::step_behaviors(double dt, const std::int32_t& stepping) {
+  lua_State* const L = state_.get();
+  lua_rawgeti(L, LUA_REGISTRYINDEX, step_behaviors_);
+  lua_pushnumber(L, dt);
+  BehaviorFault fault = guarded_behavior(1, 0);
+  // one that was stopped in its last instruction
+  if (!fault.text.empty() && fault.line == 0 && push_behavior(behavior_step_, stepping)) {
+    lua_settop(L, -2);
+    guard_.blame_function();
+    fault = {guard_.fault().text, guard_.fault().file, guard_.fault().line};
+  }
+  lua_settop(L, 0);
+  return fault;
+}
+
 BehaviorFault Vm::restore_behavior(std::int32_t number, std::string_view state, bool migrate) {
   lua_State* const L = state_.get();
   lua_rawgeti(L, LUA_REGISTRYINDEX, restore_behavior_);

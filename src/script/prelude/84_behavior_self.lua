@@ -154,6 +154,17 @@ local entry = P.entry
 local selfs, starts, steps, migrates = {}, {}, {}, {}
 entry.behavior_self, entry.behavior_start, entry.behavior_step, entry.behavior_migrate = selfs, starts, steps, migrates
 
+-- Steps of many instances in one call; each is guarded by itself all the same, from one behavior_next to the next. A
+-- loop around them is compiled together with what they do; a call for each would come from C++, interpreted up to its
+-- first loop.
+function entry.step_behaviors(dt)
+  local number = api.behavior_next(ctx)
+  while number > 0 do
+    steps[number](selfs[number], dt)
+    number = api.behavior_next(ctx)
+  end
+end
+
 function entry.make_behavior(file, slot, generation)
   local of = P.behavior_types[file]
   local number = #instances + 1
