@@ -136,7 +136,7 @@ std::size_t BehaviorScripts::step_all(std::span<Behavior* const> all, double dt)
   if (fault.text.empty()) return row_.next;
   // without a Vm nobody came to step
   if (row_.next == 0) row_.next = 1;
-  all[row_.next - 1]->fail(std::move(fault));
+  static_cast<LuaBehavior&>(*all[row_.next - 1]).fail(std::move(fault));
   return row_.next;
 }
 

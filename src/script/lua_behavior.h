@@ -31,8 +31,10 @@ class LuaBehavior final : public Behavior {
   Result<std::string> state() const;
   const BehaviorFile& file() const { return scripts_->file(file_); }
 
+  // for BehaviorScripts, which steps several in one call
   /// Its number in the Vm; 0: not there yet.
   std::int32_t number() const { return number_; }
+  using Behavior::fail;
 
  private:
   bool ready();
