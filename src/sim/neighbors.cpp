@@ -403,8 +403,7 @@ NeighborMeans NeighborSet::means_of(const Sum& sum, const Push& push, unsigned w
 
 void NeighborSet::near(const Part& of, double radius, std::vector<Neighbor>& out) {
   gather();
-  out.clear();
-  if (cloud_.size() == 0 || !(radius >= 0)) return;
+  if (cloud_.size() == 0 || !(radius >= 0)) return out.clear();
   // further than any two parts are from each other, yet its square is a float
   const auto reach = static_cast<float>(std::min(radius, 1e7));
   Grid& grid = grid_for(reach);

@@ -121,6 +121,27 @@ end)
   EXPECT_EQ(edited.show().outbox(), Texts{"/hits 101 2 2 1 none"}) << "a reset empties it";
 }
 
+TEST(ReloadScript, StateThatIsNoPlainDataIsLeftOutAndSaid) {
+  const std::string scene = R"(
+state.n = (state.n or 0) + 1
+state.list = state.list or { 1, print, { deep = print, flag = true }, turn = quat(0, 0, 0, 1) }
+local list = state.list
+osc:on('/ask', function() osc:send('/list', state.n, list[1], list[2] == nil, list[3].deep == nil, list[3].flag) end)
+)";
+  Edited edited(scene);
+  const std::uint64_t before = log_count(LogLevel::warning);
+  edited.save(scene + "-- saved");
+  edited.show().send("/ask");
+  edited.show().ticks(1);
+  EXPECT_EQ(edited.show().outbox(), Texts{"/list 2 1 1 1 1"});
+  EXPECT_EQ(log_count(LogLevel::warning), before + 2) << "list[2] and list[3].deep, once each";
+  edited.save(scene + "-- again");
+  edited.show().send("/ask");
+  edited.show().ticks(1);
+  EXPECT_EQ(edited.show().outbox(), Texts{"/list 3 1 1 1 1"});
+  EXPECT_EQ(log_count(LogLevel::warning), before + 2) << "nothing is left to be left out";
+}
+
 TEST(ReloadScript, AFailingRunIsNothing) {
   const std::string good =
       "sim.gravity = vec3(0, 0, -3)\nlocal s = sim:add_sphere_shape('s', 0.1)\n"
