@@ -178,7 +178,7 @@ int new_file(const NewCommand& command) {
   if (!scene) {
     if (const std::string why = taken_type(show, name); !why.empty())
       return fail_new(kInput,
-                      why + "; choose another name (case, underscores and a trailing \"behavior\" make no difference)");
+                      why + "; choose another name (case, underscores and a trailing 'behavior' make no difference)");
   }
   const EmbeddedFile* const text = find_embedded(template_files(), scene ? "scene.lua" : "behavior.lua");
   LIMBER_CHECK(text != nullptr);

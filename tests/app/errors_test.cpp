@@ -93,6 +93,7 @@ void write_inputs(const Folder& folder) {
               "  before = part\n"
               "end\n"
               "sim:on_step(function() warn('round and round') end)\n");
+  folder.file("show/scripts/scene.lua", "");
   folder.file("broken.urdf", "<robot name='r'><link name='a'>");
 }
 

@@ -158,7 +158,7 @@ TEST(New, ABehaviorIsNotCalledLikeAnotherType) {
   folder.file("scripts/s.lua", "");
   folder.file("behaviors_lua/Sway_Behavior.lua", "mine");
   const fs::path root = folder.path();
-  const std::string cure = "; choose another name (case, underscores and a trailing \"behavior\" make no difference)\n";
+  const std::string cure = "; choose another name (case, underscores and a trailing 'behavior' make no difference)\n";
   const std::string twin = std::string(LIMBER_SOURCE_DIR) + "/behaviors_lua/lua_force.lua";
   const struct {
     const char* name;

@@ -99,6 +99,11 @@ TEST(BehaviorsUndone, ACallbackThatFailsHasRemovedNothing) {
     }
     EXPECT_NE(play(fmt::format("sim:at(0.2, function() {} end)", deed), "", 0), alone) << deed;
   }
+  // what it made, and what found it, is forgotten
+  EXPECT_EQ(play("sim:at(0.2, function() a:add_part('more', shape) local n = #a:behavior('drawing').parts "
+                 "if n == 2 then error('x') end end)",
+                 "", 1),
+            alone);
   // nor has one that made them first
   EXPECT_EQ(play("sim:at(0.2, function() a:copy('c'):behavior('drawing'):remove() a:behavior('wind'):remove() "
                  "a:add_behavior('force', 'wind'):remove() error('x') end)",

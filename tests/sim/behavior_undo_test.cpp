@@ -12,7 +12,7 @@ using namespace test;
 
 struct Cast {
   BehaviorRig& s;
-  Body &a, &b;
+  Body &a, &b, &bare;
   Probe &one, &two, &three;
   BehaviorGroup& flock;
 };
@@ -29,9 +29,10 @@ Left play(const std::function<void(Cast&)>& call, bool good) {
   BehaviorRig s;
   Body& a = s.chain("a", {"base", "tip"});
   Body& b = s.chain("b", {"base"});
+  Body& bare = s.body("bare");
   Probe& one = s.probe(a, "one");
   BehaviorGroup& flock = s.group("flock");
-  Cast cast{s, a, b, one, s.probe(a, "two"), s.probe(b, "three"), flock};
+  Cast cast{s, a, b, bare, one, s.probe(a, "two"), s.probe(b, "three"), flock};
   s.ticks(10);
   BehaviorRig::take_diary();
   s.world.undo().begin();
@@ -74,6 +75,19 @@ const std::vector<Deed>& deeds() {
          c.s.list().remove(*copy.behaviors()[0]);
          c.s.list().remove(c.one);
          c.s.list().remove(*copy.behaviors()[0]);
+       }},
+      {"a part that it acts on, too",
+       [](Cast& c) {
+         ASSERT_TRUE(c.a.add_part("more", c.s.shape(sphere_model(0.1)), 1, {{9, 0, 0}, quat_identity()}));
+         c.s.list().follow_bodies();
+         ASSERT_EQ(c.one.parts().size(), 3u);
+       }},
+      {"a member more, which goes at once",
+       [](Cast& c) {
+         ASSERT_TRUE(c.bare.add_part("first", c.s.shape(sphere_model(0.1)), 1, {{9, 0, 0}, quat_identity()}));
+         c.s.list().follow_bodies();
+         ASSERT_EQ(c.flock.members().size(), 3u);
+         c.s.list().remove(*c.flock.members()[0]);
        }},
       {"a start anew", [](Cast& c) { c.a.reset(); }},
       {"parameters, then away", [](Cast& c) { c.s.set(c.one.id(), "amount", {7}), c.s.list().remove(c.one); }},
