@@ -117,13 +117,16 @@ TEST_P(HostileBehaviors, AreSuspendedAloneAndLeaveNoTrace) {
     }
     hashes.push_back(hash_of(stage, "healthy"));
     hashes.push_back(hash_bytes("before", hash_of(stage, "before") ^ hash_of(stage, "behind")));
+    const auto& words = bad.random().state();
+    hashes.push_back(hash_bytes({reinterpret_cast<const char*>(words.data()), sizeof words}));
     const Part& part = *stage.world.find_body("bad")->root();
     hashes.push_back(hash_bytes({reinterpret_cast<const char*>(stage.store.live_block(part.id())),
                                  Part::table().live_width() * sizeof(double)}));
   }
-  EXPECT_EQ(hashes[0], hashes[3]) << "the healthy body";
-  EXPECT_EQ(hashes[1], hashes[4]) << "the other members";
-  EXPECT_EQ(hashes[2], hashes[5]) << "its own part";
+  EXPECT_EQ(hashes[0], hashes[4]) << "the healthy body";
+  EXPECT_EQ(hashes[1], hashes[5]) << "the other members";
+  EXPECT_EQ(hashes[2], hashes[6]) << "its own draws";
+  EXPECT_EQ(hashes[3], hashes[7]) << "its own part";
 }
 
 INSTANTIATE_TEST_SUITE_P(, HostileBehaviors, ::testing::ValuesIn(kHostile),
