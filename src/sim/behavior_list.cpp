@@ -61,7 +61,8 @@ Result<std::unique_ptr<Behavior>> BehaviorList::make(Body& body, const std::shar
   return behavior;
 }
 
-Result<Behavior*> BehaviorList::add(Body& body, std::string_view type_name, std::string name, BehaviorSetup setup) {
+Result<Behavior*> BehaviorList::add(Body& body, std::string_view type_name, const std::string& name,
+                                    BehaviorSetup setup) {
   const Result<std::shared_ptr<const BehaviorType>> type = types_.require(type_name);
   if (!type) return Error{type.error()};
   if ((*type)->is_group) {
@@ -91,7 +92,7 @@ Result<BehaviorGroup*> BehaviorList::add_group(std::string_view type_name, std::
   Result<void> good = group->names_exist();
   if (good) good = group->follow();
   if (!good) {
-    const std::string text = good.error();
+    const std::string& text = good.error();
     while (!group->members_.empty()) drop(*group->members_.back());
     return Error{text};
   }

@@ -28,7 +28,7 @@ class BehaviorList {
   const BehaviorTypes& types() const { return types_; }
 
   /// Attaches a behaviour to a body. Errors name what exists: a type, a part, a joint, a motor; a taken name.
-  Result<Behavior*> add(Body& body, std::string_view type, std::string name, BehaviorSetup setup = {});
+  Result<Behavior*> add(Body& body, std::string_view type, const std::string& name, BehaviorSetup setup = {});
   /// Attaches one to each of several bodies. Errors as of add; a body that is named and does not exist.
   Result<BehaviorGroup*> add_group(std::string_view type, std::string name, GroupSetup setup = {});
   /// Detaches it. May be called while behaviours step: it does not act again. A guarded call that fails has not done

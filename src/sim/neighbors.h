@@ -35,7 +35,8 @@ struct NeighborMeans {
 };
 
 /// What of the means is wanted beside count and offset, as bits.
-enum : unsigned { kWantVelocity = 1, kWantPush = 2 };
+inline constexpr unsigned kWantVelocity = 1;
+inline constexpr unsigned kWantPush = 2;
 
 class NeighborSet {
  public:
