@@ -118,7 +118,8 @@ TEST(Values, NoiseIsPerlins) {
 
 TEST(Values, MistakesAreExplained) {
   const std::string at = "scripts/scene.lua:1: ";
-  EXPECT_EQ(error_of("local v = vec3(1, 2, 3) v.x = 5"), at + "this member never changes; of a vec3 or quat set the whole value");
+  EXPECT_EQ(error_of("local v = vec3(1, 2, 3) v.x = 5"),
+            at + "this member never changes; of a vec3 or quat set the whole value");
   EXPECT_EQ(error_of("local v = vec3() v.w = 5"), at + "a vec3 never changes; set the whole value");
   EXPECT_EQ(error_of("local v = vec3().lenght"), at + "a vec3 has no member 'lenght'; did you mean 'length'?");
   EXPECT_EQ(error_of("local v = vec3(1, 2, 3) + 1"), at + "can't add vec3(1, 2, 3) and 1");
