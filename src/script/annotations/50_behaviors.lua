@@ -48,7 +48,10 @@ function behavior_self_:neighbors(part, radius) end
 ---@param part part
 ---@param min_dist number # m
 ---@param max_dist number # m
----@return integer, vec3, vec3, vec3
+---@return integer
+---@return vec3
+---@return vec3
+---@return vec3
 function behavior_self_:neighbor_means(part, min_dist, max_dist) end
 
 ---The mean over the neighbours between two distances of: a unit vector to the neighbour, times 1 - distance / max_dist.
