@@ -246,14 +246,12 @@ const NeighborMeans& NeighborSet::means_near(const Part& of, double least, doubl
   for (Whole& known : wholes_) {
     if (known.least == least && known.most == most) whole = &known;
   }
-  if (whole == nullptr) whole = &wholes_.emplace_back(Whole{least, most, 0, answers_.size()});
-  if (whole->answer == answers_.size() || (want & ~whole->want) != 0) {
-    const NeighborMeans* const all = means(parts_, least, most, want).data();
+  if (whole == nullptr) whole = &wholes_.emplace_back(Whole{least, most});
+  if (whole->means == nullptr || (want & ~whole->want) != 0) {
     whole->want |= want;
-    whole->answer = 0;
-    while (answers_[whole->answer].means.data() != all) whole->answer++;
+    whole->means = means(parts_, least, most, want).data();
   }
-  return answers_[whole->answer].means[own];
+  return whole->means[own];
 }
 
 void NeighborSet::take_question(Answer& answer, std::span<Part* const> of) const {

@@ -97,10 +97,10 @@ class NeighborSet {
         at;  // where each is in parts_, where they are many of these and in their order; or empty
     std::vector<NeighborMeans> means;
   };
-  struct Whole {  // a question that was answered for all parts
+  struct Whole {  // a question that was answered for all parts, and where the answer begins: it stays there in a tick
     double least = 0, most = 0;
     unsigned want = 0;
-    std::size_t answer = 0;
+    const NeighborMeans* means = nullptr;
   };
   struct Totals {
     double count = 0;
