@@ -33,6 +33,7 @@ constexpr std::array kUnits = {
     Unit{"N·s/m | N·m·s/rad", "newton second per metre along, newton metre second per radian about the axis"},
     Unit{"1/s", "fraction lost per second"},
     Unit{"× real time", "simulated seconds per real second"},
+    Unit{"hsb", "hue, saturation, brightness"},
 };
 }  // namespace
 
