@@ -24,6 +24,8 @@ local body = sim:add_body("arm one")
 body:add_part("base", shape, { mass = 0, position = vec3(0, 0, 2) })
 body:add_part("tip", shape, { position = vec3(0, 0, 1) })
 body:add_motor(body:add_joint("elbow", "base", "tip", { position = vec3(0, 0, 2), axis = vec3(0, 1, 0) }))
+body:add_behavior("force", "push", { parts = "tip" })
+sim:add_group_behavior("cohesion", "swarm", { amount = 2 })
 osc:on("/more", function() body:copy("two") end)
 """
 
@@ -198,6 +200,25 @@ def play(browser, limber, shots):
     browser.until("document.getElementById('play').getAttribute('aria-pressed') === 'true'", "space stands still")
     browser.eval("document.getElementById('play').click()")
     browser.until("document.getElementById('play').getAttribute('aria-pressed') === 'false'", "the button plays")
+    # behaviours: toggled, opened, and shown as others set them
+    push = "[...document.querySelectorAll('#behaviors .behavior')].find(b => b.innerText.includes('push'))"
+    browser.until(f"Boolean({push})", "behaviours are listed")
+    browser.until("document.getElementById('behaviors').innerText.includes('swarm')", "groups too")
+    browser.eval(f"({push}).querySelector('input[type=checkbox]').click()")
+    browser.until("fetch('/physics/body/arm%20one/behavior/push/active?VALUE').then(r => r.json()).then(j => j.VALUE[0] === false)",
+                  "a behaviour is switched off")
+    limber.send("/physics/body/arm%20one/behavior/push/active", 1)
+    browser.until(f"({push}).querySelector('input[type=checkbox]').checked", "and shown when another hand switches it on")
+    browser.eval(f"({push}).open = true")
+    browser.until(f"[...({push}).querySelectorAll('.row')].some(r => r.innerText.includes('amp'))", "it opens to its parameters")
+    # a colour
+    browser.eval("document.querySelector('[data-path=\"/visuals\"]').open = true")
+    background = ROW % "background"
+    browser.until(f"Boolean({background})", "the picture's values are there")
+    browser.eval(f"(() => {{ const c = ({background}).querySelector('input[type=color]'); c.value = '#ff0000';"
+                 " c.dispatchEvent(new Event('input')); c.dispatchEvent(new Event('change')); })()")
+    browser.until("fetch('/visuals/background?VALUE').then(r => r.json()).then(j => j.VALUE[1] > 0.99 && j.VALUE[2] > 0.99)",
+                  "a colour is set")
     # things that come, and search
     browser.eval("document.querySelector('[data-path=\"/physics/body\"]').open = true")
     browser.until("Boolean(document.querySelector('[data-path=\"/physics/body/arm%20one\"]'))", "bodies are listed")

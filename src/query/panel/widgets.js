@@ -26,6 +26,8 @@ const widgets = (() => {
   const name = (path) => decodeURIComponent(path.slice(path.lastIndexOf('/') + 1));
   const label = (node) => (node.CONTENTS ? name(node.FULL_PATH) : name(node.FULL_PATH).replace(/_/g, ' '));
   const flat = (values) => (values || []).flat();
+  // beyond what a float on the wire loses
+  const differs = (a, b) => a !== b && !(Math.abs(a - b) <= 1e-6 * Math.max(Math.abs(a), Math.abs(b)));
 
   // hue, saturation, brightness (0 .. 1) as #rrggbb, and back
   function toHex([h, s, b]) {
@@ -157,7 +159,7 @@ const widgets = (() => {
     let frame = 0;
     const standard = node.DEFAULT_VALUE && flat(node.DEFAULT_VALUE);
     function mark(values) {
-      if (standard) box.classList.toggle('set', standard.some((v, i) => v !== values[i] && Math.fround(v) !== Math.fround(values[i])));
+      if (standard) box.classList.toggle('set', standard.some((v, i) => differs(v, values[i])));
     }
     function changed(values) {
       late = null;
