@@ -127,6 +127,9 @@ TEST_F(Catalog, APatternThatIsTooMuchWorkIsRefusedWhole) {
   EXPECT_TRUE(small.over());
   // what is spent is a few names' worth beyond it at most
   EXPECT_GT(small.left, -30000);
+  // what was found before the work was too much counts for nothing either
+  PatternBudget half{100 * PatternBudget::kName};
+  EXPECT_FALSE(match_places(store, "/toys/*/mass", half).ok());
   // an exact path costs nothing, and one that is cheap is found with what is left
   PatternBudget left{20 * PatternBudget::kName};
   EXPECT_TRUE(match_places(store, "/toys/duck/mass", left).ok());
