@@ -97,23 +97,25 @@ Arg arg_of(const std::string& word) {
 int send_command(const SendCommand& command) {
   Message message{command.address, {}};
   if (!message.address.starts_with('/'))
-    return fail(kUsage, fmt::format("send: '{}' is no address: it must begin with /", printable(message.address)));
+    return fail(kUsage, fmt::format("send: '{}' is no address: it must begin with /", message.address));
   for (const std::string& word : command.words) message.args.push_back(arg_of(word));
   const Result<Endpoint> to = endpoint_named(command.to);
   if (!to) return fail(kUsage, "send: " + to.error());
   const Result<Socket> socket = open_udp({});
   if (!socket) return fail(kMachine, "send: " + socket.error());
   if (!send_message(socket->fd(), *to, message)) {
-    return fail(kMachine, fmt::format("send: the message could not be sent to {}; is it too long, or the address wrong?",
-                                      printable(command.to)));
+    return fail(
+        kMachine,
+        fmt::format("send: the message could not be sent to {}; is it too long, or the address wrong?", command.to));
   }
   if (command.wait <= 0) return kFine;
   const auto ask = [&] { (void)send_message(socket->fd(), *to, {"/get", {Arg::of(kLast)}}); };
   const Answers answers = show_answers(socket->fd(), command.wait, ask);
   if (answers.refused) return kInput;
   if (!answers.whole) {
-    return fail(kMachine, fmt::format("send: nobody answers at {}; is Limber playing there? (--wait 0 asks for no answer)",
-                                      printable(command.to)));
+    return fail(
+        kMachine,
+        fmt::format("send: nobody answers at {}; is Limber playing there? (--wait 0 asks for no answer)", command.to));
   }
   return kFine;
 }
