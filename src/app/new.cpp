@@ -35,8 +35,6 @@ namespace fs = std::filesystem;
 
 constexpr std::size_t kMostName = 64;
 
-int fail_new(int code, const std::string& text) { return fail(code, "new: " + text); }
-
 // small letters, digits and _, so that it can be a file, an address and a word in Lua
 bool good_name(std::string_view name) {
   constexpr std::string_view kLetters = "abcdefghijklmnopqrstuvwxyz";
@@ -93,15 +91,15 @@ int write_new(const fs::path& path, std::string_view text) {
 int write_and_say(const fs::path& path, std::string_view text) {
   const int fault = write_new(path, text);
   if (fault == EEXIST)
-    return fail_new(kInput, fmt::format("{} is there already and stays as it is; choose another name", path.string()));
+    return fail(kInput, fmt::format("new: {} is there already and stays as it is; choose another name", path.string()));
   if (fault != 0) {
     const bool by_path = fault == ENOTDIR || fault == ENAMETOOLONG || fault == ELOOP;
     const bool full = fault == ENOSPC || fault == EDQUOT;
-    return fail_new(by_path ? kInput : kMachine,
-                    fmt::format("{} can't be written: {}; {}", path.string(), std::generic_category().message(fault),
-                                by_path ? "choose another place"
-                                : full  ? "make room on the disk"
-                                        : "look at the folder's permissions"));
+    return fail(by_path ? kInput : kMachine,
+                fmt::format("new: {} can't be written: {}; {}", path.string(), std::generic_category().message(fault),
+                            by_path ? "choose another place"
+                            : full  ? "make room on the disk"
+                                    : "look at the folder's permissions"));
   }
   fmt::print("{}\n", printable(path.string()));
   return kFine;
@@ -109,13 +107,13 @@ int write_and_say(const fs::path& path, std::string_view text) {
 
 int new_show(const std::string& folder) {
   if (folder.empty() || printable(folder) != folder || folder.find_first_of("\n\t") != std::string::npos) {
-    return fail_new(kUsage,
-                    fmt::format("'{}' can't be a show's folder: its name is printable text; such as my_show", folder));
+    return fail(kUsage,
+                fmt::format("new: '{}' can't be a show's folder: its name is printable text; such as my_show", folder));
   }
   std::error_code fault;
   const fs::path root(folder);
   if (fs::exists(root, fault) && !(fs::is_directory(root, fault) && fs::is_empty(root, fault)))
-    return fail_new(kInput, fmt::format("{} is there already; name a folder that is new or empty", folder));
+    return fail(kInput, fmt::format("new: {} is there already; name a folder that is new or empty", folder));
   const std::string name = fs::absolute(root, fault).lexically_normal().filename().string();
   const std::string title = name.empty() ? fs::absolute(root, fault).parent_path().filename().string() : name;
   constexpr std::string_view kFolder = "show/";
@@ -165,20 +163,21 @@ int new_file(const NewCommand& command) {
   if (name.ends_with(".lua")) name.resize(name.size() - 4);
   if (!good_name(name)) {
     const std::string near = nearest_good_name(name);
-    return fail_new(
-        kUsage, fmt::format("'{}' can't be a {}'s name: it has small letters, digits and _, begins with a "
+    return fail(kUsage,
+                fmt::format("new: '{}' can't be a {}'s name: it has small letters, digits and _, begins with a "
                             "letter, and is up to {} long{}",
                             command.name, kind, kMostName, near.empty() ? "" : fmt::format("; such as '{}'", near)));
   }
   const fs::path show = show_folder();
   if (show.empty()) {
-    return fail_new(
-        kInput, "there is no show here: go into one (a folder that holds scripts/), or make one: limber new show DIR");
+    return fail(
+        kInput,
+        "new: there is no show here: go into one (a folder that holds scripts/), or make one: limber new show DIR");
   }
   if (!scene) {
     if (const std::string why = taken_type(show, name); !why.empty())
-      return fail_new(kInput,
-                      why + "; choose another name (case, underscores and a trailing 'behavior' make no difference)");
+      return fail(kInput, "new: " + why +
+                              "; choose another name (case, underscores and a trailing 'behavior' make no difference)");
   }
   const EmbeddedFile* const text = find_embedded(template_files(), scene ? "scene.lua" : "behavior.lua");
   LIMBER_CHECK(text != nullptr);

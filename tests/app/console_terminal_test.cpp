@@ -50,8 +50,8 @@ class Typist {
       }
     }
   }
-  /// Reads until the prompt has come and the editor has the terminal, which it takes right after: what is typed before is
-  /// echoed twice, and Ctrl+C would drop it. Gives what came.
+  /// Reads until the prompt has come and the editor has the terminal, which it takes right after: what is typed before
+  /// is echoed twice, and Ctrl+C would drop it. Gives what came.
   std::string prompted(const std::string& prompt = "limber> ") {
     std::string came = until(prompt);
     termios mode{};
