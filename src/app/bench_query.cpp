@@ -23,7 +23,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr int kArms = 16;
+constexpr int kListenedArms = 16;
 constexpr int kClients = 100;
 constexpr int kPaths = 50;
 constexpr int kRounds = 4;
@@ -51,7 +51,7 @@ Socket connect_client(std::uint16_t port, int number) {
   words.clear();
   for (int i = 0; i < kPaths; i++) {
     const std::string path =
-        fmt::format("/physics/body/arm{}/part/part{}/position", (number + i) % kArms + 1, i % 16 + 1);
+        fmt::format("/physics/body/arm{}/part/part{}/position", (number + i) % kListenedArms + 1, i % 16 + 1);
     words += text_frame(fmt::format(R"({{"COMMAND":"LISTEN","DATA":"{}"}})", path));
   }
   if (send(client.fd(), words.data(), words.size(), MSG_NOSIGNAL) < 0) return {};
@@ -110,7 +110,7 @@ void play(BenchArms& arms, int ticks, Samples& samples) {
 
 nlohmann::ordered_json bench_query(const BenchOptions& options) {
   const int ticks = options.ticks > 0 ? options.ticks : 150;
-  BenchArms arms(bench_arm_scene(kArms));
+  BenchArms arms(bench_arm_scene(kListenedArms));
   Network network(arms.link(), {std::vector<ListenAddress>{}, std::vector<StreamTarget>{}, {}, false}, live_offsets());
   QueryServer server(arms.link(), query_doors(network, {}));
   if (const Result<void> started = server.start({"127.0.0.1", 0}); !started) return {{"fault", started.error()}};

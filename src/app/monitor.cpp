@@ -15,11 +15,11 @@ namespace {
 
 using Kind = ConsoleLine::Kind;
 
-volatile std::sig_atomic_t interrupted = 0;
+volatile std::sig_atomic_t told_to_end = 0;
 
 void end_at_a_signal() {
   struct sigaction action {};
-  action.sa_handler = [](int) { interrupted = 1; };  // without SA_RESTART: the wait ends
+  action.sa_handler = [](int) { told_to_end = 1; };  // without SA_RESTART: the wait ends
   for (const int number : {SIGINT, SIGTERM}) sigaction(number, &action, nullptr);
 }
 
@@ -59,7 +59,7 @@ int monitor_command(const MonitorCommand& command) {
   const auto wish = command.changes ? ConsoleRequest::Wish::changes : ConsoleRequest::Wish::traffic;
   if (!link->send({1, wish, command.pattern})) return fail(kInput, "monitor: limber ended");
   Paper paper(command);
-  while (interrupted == 0) {
+  while (told_to_end == 0) {
     const std::optional<ConsoleLine> line = link->next(-1);
     if (line && line->kind == Kind::error) return fail(kInput, "monitor: " + line->text);
     if (line && line->kind == Kind::refused) return fail(kInput, "monitor: " + line->text);

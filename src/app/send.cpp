@@ -50,13 +50,13 @@ std::vector<Message> receive(int fd, double seconds) {
   return decoded ? std::move(decoded->messages) : std::vector<Message>();
 }
 
-struct Answers {
+struct Heard {
   bool whole = false;  // nothing more will come
   bool refused = false;
 };
 
-Answers show_answers(int fd, double wait, const std::function<void()>& ask) {
-  Answers answers;
+Heard show_answers(int fd, double wait, const std::function<void()>& ask) {
+  Heard answers;
   int asked = 1;
   ask();
   const double end = clock_seconds() + wait;
@@ -110,7 +110,7 @@ int send_command(const SendCommand& command) {
   }
   if (command.wait <= 0) return kFine;
   const auto ask = [&] { (void)send_message(socket->fd(), *to, {"/get", {Arg::of(kLast)}}); };
-  const Answers answers = show_answers(socket->fd(), command.wait, ask);
+  const Heard answers = show_answers(socket->fd(), command.wait, ask);
   if (answers.refused) return kInput;
   if (!answers.whole) {
     return fail(

@@ -111,7 +111,7 @@ std::span<const char> encode_tagged(const Message& message, std::string_view tag
   LIMBER_CHECK(static_cast<std::size_t>(std::ranges::count_if(tags, takes_one)) == message.args.size());
   std::size_t size = padded(std::strlen(message.address.c_str())) + padded(1 + tags.size());
   for (const Arg& arg : message.args) size += arg.is_text() ? padded(std::strlen(arg.text.c_str())) : 8;
-  if (size > PacketBuffer::kMost) return {};
+  if (size > kLargestPacket) return {};
   return write_packet(buffer, [&](osc::OutboundPacketStream& out) {
     out << osc::BeginMessage(message.address.c_str());
     auto arg = message.args.begin();
