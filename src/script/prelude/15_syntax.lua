@@ -81,10 +81,12 @@ local function misplaced_end(text)
   return found
 end
 
+local kLongest = 65536 -- bytes that are searched: a hint may not cost more than the error
+
 local load = P.load
 function P.load(text, name, env)
   local chunk, fault = load(text, name, env)
-  if chunk or name == "@console" then return chunk, fault end
+  if chunk or name == "@console" or #text > kLongest then return chunk, fault end
   local hint = misplaced_end(text)
   if not hint and find(fault, "'}' expected", 1, true) and not find(fault, "near '<eof>'", 1, true) then
     hint = "is a comma missing before it?"
