@@ -16,25 +16,12 @@ return behavior {
   step = function(self)
     local close = self.distance
     for _, part in ipairs(self.parts) do
-      -- summed as numbers: a vec3 that lives on from turn to turn would be made anew at each
-      local n, x, y, z = 0, 0, 0, 0 -- where the others are
-      local vx, vy, vz = 0, 0, 0    -- how they move
-      local ax, ay, az = 0, 0, 0    -- away from those that are too near
-      for other, offset, distance in self:neighbors(part, self.radius) do
-        local v = other.linear_velocity
-        n, x, y, z = n + 1, x + offset.x, y + offset.y, z + offset.z
-        vx, vy, vz = vx + v.x, vy + v.y, vz + v.z
-        if distance < close and distance > 0 then
-          local share = 1 / distance - 1 / close
-          ax, ay, az = ax - offset.x * share, ay - offset.y * share, az - offset.z * share
-        end
-      end
+      local _, middle, motion = self:neighbor_means(part, 0, self.radius)
+      local crowd = self:neighbor_means(part, 0, close)
       local v = part.linear_velocity
       local push = v:normalized() * (self.haste * (self.speed - v:length()))
-      if n > 0 then
-        push = push + vec3(x, y, z) * (self.cohesion / n) + (vec3(vx, vy, vz) / n - v) * self.alignment
-          + vec3(ax, ay, az) * self.separation
-      end
+      push = push + middle * self.cohesion + motion * self.alignment
+        - self:neighbor_push(part, 0, close) * (crowd * self.separation)
       part:apply_force(push * part.mass)
     end
   end,

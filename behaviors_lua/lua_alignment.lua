@@ -27,22 +27,9 @@ return behavior {
     local near, far = self.min_dist, self.max_dist
     if far <= near then return end
     for _, part in ipairs(self.parts) do
-      -- summed as numbers: a vec3 that lives on from turn to turn would be made anew at each
-      local x, y, z, n = 0, 0, 0, 0
-      local vx, vy, vz, wx, wy, wz = 0, 0, 0, 0, 0, 0
-      for other, offset, distance in self:neighbors(part, far) do
-        if distance >= near then
-          local v, w = other.linear_velocity, other.angular_velocity
-          x, y, z, n = x + offset.x, y + offset.y, z + offset.z, n + 1
-          vx, vy, vz = vx + v.x, vy + v.y, vz + v.z
-          wx, wy, wz = wx + w.x, wy + w.y, wz + w.z
-        end
-      end
+      local n, way, velocity, spin = self:neighbor_means(part, near, far)
       if n > 0 then
-        local way = vec3(x, y, z) / n
         local s = self.amount * math.clamp(1 - (way:length() - near) / (far - near), 0, 1)
-        local velocity = vec3(vx, vy, vz) / n - part.linear_velocity
-        local spin = vec3(wx, wy, wz) / n - part.angular_velocity
         part:apply_force(velocity * bounded(self.linear_amount * s, part.mass, dt))
         part:apply_torque(bounded_torque(part, self.angular_amount * s, spin, dt))
       end

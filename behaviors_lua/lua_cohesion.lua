@@ -11,13 +11,8 @@ return behavior {
     local near, far, amount = self.min_dist, self.max_dist, self.amount
     if far <= near then return end
     for _, part in ipairs(self.parts) do
-      -- summed as numbers: a vec3 that lives on from turn to turn would be made anew at each
-      local x, y, z, n = 0, 0, 0, 0
-      for _, offset, distance in self:neighbors(part, far) do
-        if distance >= near then x, y, z, n = x + offset.x, y + offset.y, z + offset.z, n + 1 end
-      end
+      local n, way = self:neighbor_means(part, near, far)
       if n > 0 then
-        local way = vec3(x, y, z) / n
         local s = near > 0 and math.clamp((way:length() - near) / (far - near), 0, 1) or 1
         part:apply_force(way:normalized() * (amount * s))
       end

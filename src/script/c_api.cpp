@@ -29,6 +29,12 @@ static_assert(offsetof(LimberNeighbor, index) == offsetof(Neighbor, index));
 static_assert(offsetof(LimberNeighbor, x) == offsetof(Neighbor, offset));
 static_assert(offsetof(LimberNeighbor, distance) == offsetof(Neighbor, distance));
 
+static_assert(sizeof(LimberMeans) == sizeof(NeighborMeans));
+static_assert(offsetof(LimberMeans, offset) == offsetof(NeighborMeans, offset));
+static_assert(offsetof(LimberMeans, velocity) == offsetof(NeighborMeans, velocity));
+static_assert(offsetof(LimberMeans, spin) == offsetof(NeighborMeans, spin));
+static_assert(offsetof(LimberMeans, push) == offsetof(NeighborMeans, push));
+
 const LimberApi& limber_api() {
   static const LimberApi api = {
 #define LIMBER_STRUCT(...)

@@ -103,6 +103,16 @@ std::int32_t neighbors(void* c, std::int32_t slot, std::int32_t generation, std:
   return kOk;
 }
 
+const LimberMeans* neighbor_means(void* c, std::int32_t slot, std::int32_t generation, std::int32_t part_slot,
+                                  std::int32_t part_generation, double least, double most, std::int32_t want) {
+  ScriptContext& context = context_of(c);
+  const Behavior* behavior = behavior_of(context, id_of(slot, generation));
+  const Part* part = thing_of<Part>(context, id_of(part_slot, part_generation));
+  if (behavior == nullptr || part == nullptr) return nullptr;
+  NeighborSet& set = behavior->group()->neighbors();
+  return reinterpret_cast<const LimberMeans*>(&set.means_near(*part, least, most, static_cast<unsigned>(want)));
+}
+
 std::int32_t neighbor_part(void* c, std::int32_t slot, std::int32_t generation, std::int32_t index) {
   ScriptContext& context = context_of(c);
   const Behavior* behavior = behavior_of(context, id_of(slot, generation));

@@ -35,6 +35,7 @@ void put(const Vec3& v, float* out) {
 }
 
 constexpr std::uint32_t kNoPlace = 0xffffffffu;
+constexpr double kFarthest = 1e7;  // m: further than any two parts are from each other, yet its square is a float
 
 // where a part's numbers lie in its live block
 struct PartOffsets {
@@ -109,6 +110,7 @@ void NeighborSet::gather() {
   cloud_.one_each = static_cast<std::size_t>(bodies_) == parts_.size();
   motions_gathered_ = false;
   lists_.begin();
+  wholes_.clear();
   found_.resize(cloud_.size());
   for (const auto& grid : grids_) grid->used = false;
   for (Answer& answer : answers_) {
@@ -227,6 +229,33 @@ std::span<const NeighborMeans> NeighborSet::means(std::span<Part* const> of, dou
   return answer->means;
 }
 
+const NeighborMeans& NeighborSet::means_near(const Part& of, double least, double most, unsigned want) {
+  gather();
+  least = std::max(least, 0.0);
+  most = std::min(most, kFarthest);
+  const std::uint32_t slot = of.id().slot;
+  const std::uint32_t own = slot < numbers_.size() ? numbers_[slot] : kNoPlace;
+  if (own == kNoPlace) {
+    alone_ = {};
+    if (!(most > least) || cloud_.size() == 0) return alone_;
+    Grid& grid = grid_for(static_cast<float>(most));
+    fill_motions(grid, kWantVelocity);
+    return alone_ = sum_near<kWantVelocity | kWantPush>(grid, spot_of(of), least, most);
+  }
+  Whole* whole = nullptr;
+  for (Whole& known : wholes_) {
+    if (known.least == least && known.most == most) whole = &known;
+  }
+  if (whole == nullptr) whole = &wholes_.emplace_back(Whole{least, most, 0, answers_.size()});
+  if (whole->answer == answers_.size() || (want & ~whole->want) != 0) {
+    const NeighborMeans* const all = means(parts_, least, most, want).data();
+    whole->want |= want;
+    whole->answer = 0;
+    while (answers_[whole->answer].means.data() != all) whole->answer++;
+  }
+  return answers_[whole->answer].means[own];
+}
+
 void NeighborSet::take_question(Answer& answer, std::span<Part* const> of) const {
   const std::uint64_t structure = world_.store().structure_version();
   const bool known =
@@ -298,35 +327,38 @@ void NeighborSet::sum(Grid& grid, Answer& answer) {
 }
 
 template <unsigned Want>
-void NeighborSet::sum_each(Grid& grid, Answer& answer) {
-  const auto least = static_cast<float>(answer.least);
-  const auto most = static_cast<float>(answer.most);
-  const float inverse_most = 1 / most;
-  for (std::size_t i = 0; i < answer.of.size(); i++) {
-    const Vec3 center = center_of(answer.spots[i]);
-    const PointQuery query{static_cast<float>(center.x), static_cast<float>(center.y), static_cast<float>(center.z),
-                           answer.spots[i].body};
-    const std::uint32_t count = grid.grid.near(query, least, most, found_.data());
-    if (count == 0) continue;
-    const Lanes at{query.x, query.y, query.z, 0};
-    Lanes offset{}, velocity{}, spin{}, push{};
-    for (std::uint32_t j = 0; j < count; j++) {
-      const Motion& near = grid.motions[found_[j]];
-      const Lanes r = load(near.position) - at;
-      offset += r;
-      if constexpr ((Want & kWantVelocity) != 0) {
-        velocity += load(near.velocity);
-        spin += load(near.spin);
-      }
-      if constexpr ((Want & kWantPush) != 0) push += pushed(r, inverse_most);
+NeighborMeans NeighborSet::sum_near(Grid& grid, const Spot& spot, double least, double most) {
+  const Vec3 center = center_of(spot);
+  const PointQuery query{static_cast<float>(center.x), static_cast<float>(center.y), static_cast<float>(center.z),
+                         spot.body};
+  const auto farthest = static_cast<float>(most);
+  const float inverse_most = 1 / farthest;
+  const std::uint32_t count = grid.grid.near(query, static_cast<float>(least), farthest, found_.data());
+  const Lanes at{query.x, query.y, query.z, 0};
+  Lanes offset{}, velocity{}, spin{}, push{};
+  for (std::uint32_t j = 0; j < count; j++) {
+    const Motion& near = grid.motions[found_[j]];
+    const Lanes r = load(near.position) - at;
+    offset += r;
+    if constexpr ((Want & kWantVelocity) != 0) {
+      velocity += load(near.velocity);
+      spin += load(near.spin);
     }
-    Sum sum;
-    Push pushes;
-    store(sum.offset, offset);
-    store(sum.velocity, velocity);
-    store(sum.spin, spin);
-    store(pushes.sum, push);
-    answer.means[i] = means_of(sum, pushes, Want, answer.spots[i]);
+    if constexpr ((Want & kWantPush) != 0) push += pushed(r, inverse_most);
+  }
+  Sum sum;
+  Push pushes;
+  store(sum.offset, offset);
+  store(sum.velocity, velocity);
+  store(sum.spin, spin);
+  store(pushes.sum, push);
+  return means_of(sum, pushes, Want, spot);
+}
+
+template <unsigned Want>
+void NeighborSet::sum_each(Grid& grid, Answer& answer) {
+  for (std::size_t i = 0; i < answer.of.size(); i++) {
+    answer.means[i] = sum_near<Want>(grid, answer.spots[i], answer.least, answer.most);
   }
 }
 
@@ -404,8 +436,7 @@ NeighborMeans NeighborSet::means_of(const Sum& sum, const Push& push, unsigned w
 void NeighborSet::near(const Part& of, double radius, std::vector<Neighbor>& out) {
   gather();
   if (cloud_.size() == 0 || !(radius >= 0)) return out.clear();
-  // further than any two parts are from each other, yet its square is a float
-  const auto reach = static_cast<float>(std::min(radius, 1e7));
+  const auto reach = static_cast<float>(std::min(radius, kFarthest));
   Grid& grid = grid_for(reach);
   const std::uint32_t slot = of.id().slot;
   const std::uint32_t own = slot < numbers_.size() ? numbers_[slot] : kNoPlace;

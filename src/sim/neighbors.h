@@ -53,6 +53,9 @@ class NeighborSet {
   /// until the next call. Who asks for the same in one tick gets the same without more work. Where `most` covers all,
   /// it costs no more than the number of parts.
   std::span<const NeighborMeans> means(std::span<Part* const> of, double least, double most, unsigned want);
+  /// Means for one part, which need not be in the set. Where it is, all parts of the set are answered when the first
+  /// asks in a tick. `least` below 0 is 0. Valid until the next call.
+  const NeighborMeans& means_near(const Part& of, double least, double most, unsigned want);
   /// All within `radius` of a part, in the order of parts().
   void near(const Part& of, double radius, std::vector<Neighbor>& out);
   /// A body's parts are passed over from now on: it goes.
@@ -94,6 +97,11 @@ class NeighborSet {
         at;  // where each is in parts_, where they are many of these and in their order; or empty
     std::vector<NeighborMeans> means;
   };
+  struct Whole {  // a question that was answered for all parts
+    double least = 0, most = 0;
+    unsigned want = 0;
+    std::size_t answer = 0;
+  };
   struct Totals {
     double count = 0;
     Vec3 position{0}, velocity{0}, spin{0};
@@ -110,6 +118,8 @@ class NeighborSet {
   void fill_motions(Grid& grid, unsigned want);
   void answer_by_totals(Answer& answer);
   void answer_by_grid(Answer& answer);
+  template <unsigned Want>
+  NeighborMeans sum_near(Grid& grid, const Spot& spot, double least, double most);
   /// Each part's neighbours by themselves.
   template <unsigned Want>
   void sum_each(Grid& grid, Answer& answer);
@@ -134,6 +144,8 @@ class NeighborSet {
   std::vector<std::uint32_t> indices_;  // of the cloud's points in parts_
   std::vector<std::unique_ptr<Grid>> grids_;
   std::vector<Answer> answers_;
+  std::vector<Whole> wholes_;         // of this tick
+  NeighborMeans alone_;               // of one that is not in the set
   std::vector<std::uint32_t> found_;  // scratch
   std::vector<std::uint32_t> place_;  // scratch: in the grid, of parts_
   std::vector<Sum> sums_;             // scratch, by place

@@ -75,6 +75,65 @@ sim:after(0.03, function() sim:body("b2"):remove() end)
                                        "b1: of 1", "b3: of 1"}));
 }
 
+// what neighbor_means and neighbor_push say, beside sums over a walk
+constexpr const char* kMeansBesideAWalk = R"(
+local part, wrong = self.parts[1], {}
+local function same(what, a, b) if (a - b):length() > 1e-4 then wrong[#wrong + 1] = what end end
+local asked = 0
+for _, range in ipairs { vec3(0, 1.5, 0), vec3(0.5, 2.2, 0), vec3(0, 100, 0), vec3(2, 1, 0) } do
+  local near, far = range.x, range.y
+  local n, offset, velocity, spin, push = 0, vec3(), vec3(), vec3(), vec3()
+  for other, way, distance in self:neighbors(part, far) do
+    if distance >= near then
+      n, offset, push = n + 1, offset + way, push + way:normalized() * (1 - distance / far)
+      velocity = velocity + other.linear_velocity - part.linear_velocity
+      spin = spin + other.angular_velocity - part.angular_velocity
+    end
+  end
+  local m, middle, motion, turning = self:neighbor_means(part, near, far)
+  if m ~= n then wrong[#wrong + 1] = m .. " of " .. n end
+  local share = 1 / math.max(n, 1)
+  same("offset", middle, offset * share)
+  same("velocity", motion, velocity * share)
+  same("spin", turning, spin * share)
+  same("push", self:neighbor_push(part, near, far), push * share)
+  asked = asked + n
+end
+print(self.body.name .. ' ' .. asked .. ' ' .. table.concat(wrong, ' ')))";
+
+Lines beside_a_walk(const std::string& opts) {
+  BehaviorStage stage;
+  stage.write("behaviors_lua/test.lua", group(kMeansBesideAWalk));
+  EXPECT_EQ(stage.play(R"(
+sim.gravity = vec3()
+local ball = sim:add_sphere_shape('ball', 0.1)
+for i = 1, 4 do
+  local body = sim:add_body('b' .. i)
+  for k, name in ipairs { 'ball', 'eye' } do
+    local part = body:add_part(name, ball, { mass = i, position = vec3(i, k / 3, i * i / 9) })
+    part.linear_velocity, part.angular_velocity = vec3(i, -k, 0.5), vec3(0, i * k, 2)
+  end
+end
+sim:add_group_behavior('test', 'swarm', )" +
+                           opts + ")",
+                       2),
+            "");
+  for (const auto& body : stage.world.bodies()) EXPECT_EQ(body->behaviors()[0]->error(), "");
+  return stage.host.printed;
+}
+
+TEST(BehaviorNeighbors, MeansAreThoseOfAWalk) {
+  for (const std::string opts : {"{ parts = 'ball' }", "{}"}) {
+    const Lines all = beside_a_walk(opts);
+    ASSERT_EQ(all.size(), 8u);
+    for (const std::string& line : all) EXPECT_TRUE(line.ends_with(" ") && !line.ends_with(" 0 ")) << line;
+  }
+  // one that is no neighbour of others itself
+  const Lines eyes = beside_a_walk("{ parts = 'ball', neighbor_parts = 'eye' }");
+  ASSERT_EQ(eyes.size(), 8u);
+  for (const std::string& line : eyes) EXPECT_TRUE(line.ends_with(" ")) << line;
+}
+
 TEST(BehaviorNeighbors, MistakesAreExplained) {
   const auto error = [](const std::string& step) {
     BehaviorStage stage;
@@ -88,6 +147,12 @@ TEST(BehaviorNeighbors, MistakesAreExplained) {
             at + "behavior 'b1/swarm': neighbors are those of a part, not of body 'b1'");
   EXPECT_EQ(error("self:neighbors(self.parts[1])"), at + "neighbors: the radius takes a number, not nothing");
   EXPECT_EQ(error("self:neighbors(self.parts[1], 0/0)"), at + "neighbors: the radius takes a finite number, not nan");
+  EXPECT_EQ(error("self:neighbor_means(self.parts[1], 1)"),
+            at + "neighbor_means: a distance takes a number, not nothing");
+  EXPECT_EQ(error("self:neighbor_push(self.parts[1], 0, 0/0)"),
+            at + "neighbor_push: a distance takes a finite number, not nan");
+  EXPECT_EQ(error("self:neighbor_means(self, 0, 1)"),
+            at + "behavior 'b1/swarm': neighbors are those of a part, not of behavior 'b1/swarm'");
   EXPECT_EQ(error("self.neighbors(self.parts[1], 1)"),
             at + "neighbors is a method of a behavior: write it with a colon, behavior:neighbors(…), not with a dot");
   EXPECT_EQ(step_says("self:neighbors(self.parts[1], 1)").substr(0, 72),

@@ -19,10 +19,11 @@ std::ostream& operator<<(std::ostream& out, const Hostile& hostile) { return out
 constexpr Hostile kHostile[] = {
     {"Errs", "local x = nil + 1", "attempt to perform arithmetic on a nil value"},
     {"ThrowsATable", "error({})", "an error that is no text but a table"},
-    {"LoopsForEver", "while true do end", "stopped after 4 ms"},
+    {"LoopsForEver", "while true do end", " ms of computing; look for a loop without an end"},
     {"LoopsOverParts", "while true do for _, part in ipairs(self.parts) do part:apply_force(vec3(1, 0, 0)) end end",
-     "stopped after 4 ms"},
-    {"CatchesItsStop", "pcall(function() while true do end end) while true do pcall(error) end", "stopped after 4 ms"},
+     " ms of computing; look for a loop without an end"},
+    {"CatchesItsStop", "pcall(function() while true do end end) while true do pcall(error) end",
+     " ms of computing; look for a loop without an end"},
     {"EatsMemory", "local t = {} while true do t[#t + 1] = ('x'):rep(1000) .. #t end", "stopped"},
     // no stack is left to look where: it names the function that was called
     {"RecursesForEver", "local function f() return 1 + f() end f()", "stack overflow", 1},
@@ -53,7 +54,7 @@ constexpr Hostile kHostile[] = {
     {"SpoilsItsSelf", "self.slot_ = 3", "this member never changes"},
     {"ForgesASelf", "self.due({ slot_ = 1e9, generation_ = 1 }, 'push')", "due is a method of a behavior"},
     {"DrawsFromItsFile", "for i = 1, 5 do math.random() end error('done')", "done"},
-    {"AsksForTooManyDraws", "while true do self.rng:uniform() end", "stopped after 4 ms"},
+    {"AsksForTooManyDraws", "while true do self.rng:uniform() end", " ms of computing; look for a loop without an end"},
 };
 
 // a group of one kind on three bodies, the middle one hostile, beside which a healthy body is pushed about by a
@@ -217,7 +218,7 @@ TEST(HostileBehaviorsAtLoad, RefuseTheScene) {
   options.limits.run_ms = 30 * kBudgetScale;
   BehaviorStage stage(options);
   const std::string fault = stage.play_one("while true do end");
-  EXPECT_EQ(fault.find("behaviors_lua/test.lua:1: stopped after 0.03 s"), 0u) << fault;
+  EXPECT_EQ(fault.find("behaviors_lua/test.lua:1: stopped after 0."), 0u) << fault;
 }
 
 }  // namespace

@@ -42,6 +42,26 @@ function behavior_self_:due(interval) end
 ---@return fun(): part, vec3, number
 function behavior_self_:neighbors(part, radius) end
 
+---Means over the neighbours between two distances, found for the whole group at once: how many there are, the way to
+---their middle (m), their mean velocity less the part's own (m/s), and the same of angular velocities (rad/s). Zeros
+---without neighbours. Only of a group.
+---@param part part
+---@param min_dist number # m
+---@param max_dist number # m
+---@return integer
+---@return vec3
+---@return vec3
+---@return vec3
+function behavior_self_:neighbor_means(part, min_dist, max_dist) end
+
+---The mean over the neighbours between two distances of: a unit vector to the neighbour, times 1 - distance / max_dist.
+---It points to where it is crowded. Zero without neighbours. Only of a group.
+---@param part part
+---@param min_dist number # m
+---@param max_dist number # m
+---@return vec3
+function behavior_self_:neighbor_push(part, min_dist, max_dist) end
+
 ---A behaviour that is attached to a body; its parameters are properties.
 ---@class behavior
 ---@field name string # read-only.

@@ -77,6 +77,11 @@ function put(out, path, value, refuse, above, depth)
   end
 end
 
+-- Not compiled: traces of these two, which call each other, lost count of `depth` now and then (LuaJIT 2.1.0-beta3), and
+-- let tables pass that lie too deep.
+jit.off(put_table)
+jit.off(put)
+
 -- a value as text; `name` is what refuse() is told it is called. Empty: it is nil, or was refused
 function P.plain_text(value, name, refuse)
   local out = {}

@@ -34,29 +34,54 @@ local function next_neighbor(w)
   return handles_of[w.walk_][n.index + 1], V(n.x, n.y, n.z), n.distance
 end
 
-local function wrong_call(h, class, of, radius)
-  if not istype(class.ctype, h) then P.check_self(h, class, "neighbors") end
+local function wrong_call(h, class, method, of, ...)
+  if not istype(class.ctype, h) then P.check_self(h, class, method) end
   if not istype(part, of) then fail("%s: neighbors are those of a part, not of %s", P.label(h), describe(of)) end
   P.slot_of(of)
-  P.want_number(radius, "neighbors: the radius")
+  for i = 1, select("#", ...) do
+    P.want_number((select(i, ...)), select("#", ...) == 1 and method .. ": the radius" or method .. ": a distance")
+  end
+end
+
+local kVelocity, kPush = 1, 2 -- of sim/neighbors.h
+local function means(h, class, method, of, near, far, want)
+  if not (istype(class.ctype, h) and istype(part, of) and type(near) == "number" and near - near == 0 and
+    type(far) == "number" and far - far == 0) then
+    wrong_call(h, class, method, of, near, far)
+  end
+  local found = api.neighbor_means(ctx, h.slot_, h.generation_, of.slot_, of.generation_, near, far, want)
+  if found == nil then
+    wrong_call(h, class, method, of, near, far)
+    P.gone(h)
+  end
+  return found
 end
 
 function P.neighbor_members(class)
   local ctype = class.ctype
   function class.methods.neighbors(h, of, radius)
     if not (istype(ctype, h) and istype(part, of) and type(radius) == "number" and radius - radius == 0) then
-      wrong_call(h, class, of, radius)
+      wrong_call(h, class, "neighbors", of, radius)
     end
     last = last % kWalks + 1
     local walk = walks[last - 1]
     if api.neighbors(ctx, h.slot_, h.generation_, of.slot_, of.generation_, radius, last - 1) ~= 0 then
-      wrong_call(h, class, of, radius)
+      wrong_call(h, class, "neighbors", of, radius)
       P.gone(h)
     end
     local set = sets[answer.slot]
     handles_of[last - 1] = set and set.version == answer.generation and set.handles or
       gather(h, answer.slot, answer.generation)
     return next_neighbor, W(last - 1, walk.serial)
+  end
+  function class.methods.neighbor_means(h, of, near, far)
+    local m = means(h, class, "neighbor_means", of, near, far, kVelocity)
+    return m.count, V(m.offset[0], m.offset[1], m.offset[2]), V(m.velocity[0], m.velocity[1], m.velocity[2]),
+      V(m.spin[0], m.spin[1], m.spin[2])
+  end
+  function class.methods.neighbor_push(h, of, near, far)
+    local m = means(h, class, "neighbor_push", of, near, far, kPush)
+    return (V(m.push[0], m.push[1], m.push[2]))
   end
 end
 
