@@ -6,7 +6,7 @@ failed=0
 # what runs under which sanitizer: the address sanitizer takes all but tests that only read files;
 # the thread sanitizer takes the rooms where threads meet
 asan_leaves_out="architecture first_minutes long"
-tsan_takes="base engine osc console"
+tsan_takes="base engine osc console query"
 
 pass() { passed=$((passed + ${1:-1})); }
 # fail TEXT LOG: one failed check, with the end of its log

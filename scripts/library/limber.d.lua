@@ -406,6 +406,13 @@ local motor_ = {}
 ---@class shape
 ---@field name string # read-only.
 ---@field alive boolean # read-only. Whether it still exists.
+---@field transparency number # 0 .. 1, default 0. 0: nothing shines through; 1: not to be seen.
+---@field ambient_scale number # 0 .. 10, default 0.5. How much light from everywhere counts.
+---@field diffuse_scale number # 0 .. 10, default 0.5. How much the lamps' light counts.
+---@field specular_scale number # 0 .. 10, default 0.5. How bright highlights are.
+---@field specular_pow number # 0 .. 1000, default 10. How small highlights are.
+---@field ambient_color vec3like # hsb, 0 .. 1, default 0 0 1. In light from everywhere: hue, saturation, brightness.
+---@field diffuse_color vec3like # hsb, 0 .. 1, default 0 0 1. In the lamps' light: hue, saturation, brightness.
 local shape_ = {}
 
 ---Adds a shape to a compound one.
@@ -600,6 +607,40 @@ local timer_ = {}
 
 ---It does not come any more.
 function timer_:cancel() end
+
+-- What the picture is drawn with.
+
+---The picture: its background, the camera, the materials of the shapes.
+---@class visuals
+---@field alive boolean # read-only. Always true.
+---@field camera camera # read-only.
+---@field background vec3like # hsb, 0 .. 1, default 0.62 0.45 0.06. Behind everything, as hue, saturation, brightness.
+visuals = {}
+
+---A shape by its name, whose rows are its material. Those of a URDF file are called robot.link, robot.link.2, …
+---@param key string|integer|shape
+---@return shape
+function visuals:shape(key) end
+
+---The camera. The view is T(position)·Rx·Ry·Rz, in degrees; eye and target are the same in world terms.
+---@class camera
+---@field alive boolean # read-only. Always true.
+---@field projection number[] # { fovy, aspect, near, far }.
+---@field position vec3like # m, -1000000 .. 1000000, default -8.88178e-16 -0.948683 -8.22192. The world's origin, as the eye has it before it is turned; z below 0 is in front.
+---@field rotation vec3like # deg, -36000 .. 36000, default -71.5651 0 -36.8699. Turns the world: about z, then y, then x.
+---@field fovy number # deg, 1 .. 170, default 40. Field of view from bottom to top.
+---@field aspect number # 0 .. 100, default 0. Width by height of the picture; 0: the window's.
+---@field near number # m, 0.0001 .. 10000, default 0.05. What is nearer is not drawn.
+---@field far number # m, 0.01 .. 10000000, default 200. What is further away is not drawn.
+---@field distance number # m, 0.001 .. 1000000, default 7.90569. From the eye to the target.
+---@field eye vec3like # m, -1000000 .. 1000000. Where it looks from, world; the target stays.
+---@field target vec3like # m, -1000000 .. 1000000. What it looks at, world; the eye stays.
+local camera_ = {}
+
+---Looks from one point at another, upright.
+---@param eye vec3like
+---@param target vec3like
+function camera_:look_at(eye, target) end
 
 -- A scene's own parameters and state, and OSC.
 

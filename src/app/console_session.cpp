@@ -32,7 +32,7 @@ std::optional<ConsoleLine> ConsoleSession::ask(ConsoleRequest request) {
 }
 
 ConsoleSession::Answer ConsoleSession::evaluate(const std::string& text) {
-  const std::optional<ConsoleLine> answer = ask({0, false, text});
+  const std::optional<ConsoleLine> answer = ask({0, ConsoleRequest::Wish::evaluate, text});
   if (!answer) return link_.ended() ? Answer::ended : Answer::left;
   if (answer->kind == Kind::incomplete) return Answer::incomplete;
   show(*answer);
@@ -40,7 +40,7 @@ ConsoleSession::Answer ConsoleSession::evaluate(const std::string& text) {
 }
 
 std::vector<std::string> ConsoleSession::complete(const std::string& text, std::size_t& word) {
-  std::optional<ConsoleLine> answer = ask({0, true, text});
+  std::optional<ConsoleLine> answer = ask({0, ConsoleRequest::Wish::complete, text});
   if (!answer || answer->word > text.size()) return {};
   word = answer->word;
   return std::move(answer->names);

@@ -49,29 +49,36 @@ nlohmann::json as_json(const std::string& path, const Table& table, const Row& r
 
 constexpr const char* kHead = "address\tseed's message\tkind\ttype\tunit\trange\tdefault\tmeaning\n";
 
-std::vector<const Table*> classes() {
+}  // namespace
+
+std::vector<const Table*> described_classes() {
   std::vector<const Table*> all = {&World::table(), &Body::table(), &Part::table(), &Joint::table(), &Motor::table()};
   const BehaviorTypes types;
   for (const auto& type : types.all()) {
     all.push_back(type->table);
     if (type->group_table != nullptr) all.push_back(type->group_table);
   }
-  all.insert(all.end(), {&Transport::table(), &CounterNode::table()});
+  all.insert(all.end(),
+             {&Visuals::table(), &Camera::table(), &Shape::table(), &Transport::table(), &CounterNode::table()});
   return all;
 }
 
-// messages that come from no row: the dispatch's, and the one that the network answers by itself
-std::vector<Irregular> messages() {
+// the dispatch's, and those that the network answers by itself
+std::vector<Irregular> described_messages() {
   const auto list = Dispatch::irregulars();
   std::vector<Irregular> all(list.begin(), list.end());
   all.push_back({"/ping", "", "Answers at once with /pong, the tick and the time."});
+  all.push_back({"/subscribe", "path|stream [rate]", "Tells the sender of changes, or streams to it, for 30 s."});
+  all.push_back({"/unsubscribe", "[path|stream]", "Ends that, or all that the sender subscribed to."});
   return all;
 }
+
+namespace {
 
 using AddRow = std::function<void(const std::string& path, const Table& table, const Row& row)>;
 
 void each_class(const AddRow& add) {
-  for (const Table* table : classes()) {
+  for (const Table* table : described_classes()) {
     for (const Row& row : table->rows()) add(table->path(), *table, row);
   }
 }
@@ -97,7 +104,8 @@ Result<void> each_thing(const std::string& scene, const AddRow& add) {
 std::string as_text(const std::function<void(const AddRow&)>& each) {
   std::string out = kHead;
   each([&](const std::string& path, const Table& table, const Row& row) { line(out, path, table, row); });
-  for (const Irregular& m : messages()) out += fmt::format("{}\t\tmessage\t{}\t\t\t\t{}\n", m.address, m.takes, m.doc);
+  for (const Irregular& m : described_messages())
+    out += fmt::format("{}\t\tmessage\t{}\t\t\t\t{}\n", m.address, m.takes, m.doc);
   return out;
 }
 
@@ -120,7 +128,7 @@ int describe_command(const std::string& scene, bool json) {
     each([&](const std::string& path, const Table& table, const Row& row) {
       list.push_back(as_json(path, table, row));
     });
-    for (const Irregular& m : messages())
+    for (const Irregular& m : described_messages())
       list.push_back({{"path", m.address}, {"kind", "message"}, {"takes", m.takes}, {"doc", m.doc}});
     out = list.dump(2) + "\n";
   } else {

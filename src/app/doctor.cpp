@@ -15,6 +15,7 @@
 #include "base/build_info.h"
 #include "engine/link.h"
 #include "osc/network.h"
+#include "query/server.h"
 
 namespace limber {
 
@@ -50,7 +51,15 @@ bool check_ports() {
   } else {
     finding("no", "ports", open.error());
   }
-  return open.ok();
+  QueryServer query(link, {});
+  const Result<void> panel = query.start(ListenAddress{});
+  query.stop();
+  if (panel) {
+    finding("ok", "ports", "OSCQuery and remote panel 127.0.0.1:9003 (TCP) is free");
+  } else {
+    finding("no", "ports", panel.error());
+  }
+  return open.ok() && panel.ok();
 }
 
 }  // namespace

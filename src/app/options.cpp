@@ -15,12 +15,15 @@
 #include "app/bench.h"
 #include "app/console.h"
 #include "app/describe.h"
+#include "app/describe_page.h"
 #include "app/doctor.h"
 #include "app/exit_code.h"
 #include "app/inspect.h"
+#include "app/monitor.h"
 #include "app/new.h"
 #include "app/paths.h"
 #include "app/play.h"
+#include "app/send.h"
 #include "base/build_info.h"
 #include "base/text.h"
 
@@ -28,8 +31,8 @@ namespace limber {
 
 namespace {
 
-constexpr std::array<std::string_view, 8> kCommands = {"play",     "console", "new",      "inspect",
-                                                       "describe", "bench",   "annotate", "doctor"};
+constexpr std::array<std::string_view, 10> kCommands = {"play",    "console",  "monitor",  "send",  "new",
+                                                        "inspect", "describe", "annotate", "bench", "doctor"};
 
 constexpr const char* kAbout =
     "Limber: a live simulator of actuated, articulated bodies, scripted in Lua, played over OSC.\n\n"
@@ -38,6 +41,7 @@ constexpr const char* kAbout =
     "  oscsend 127.0.0.1 9003 /physics/sim/gravity f -1.6\n"
     "  limber my.lua --fast --duration 10 --hash    ten simulated seconds, as fast as it can\n"
     "  limber console -e sim.time                   asks the one that plays, in Lua\n"
+    "  limber monitor                               what it takes in and sends out\n"
     "  limber new show my_show                      a folder to begin with\n";
 
 constexpr const char* kExitCodes =
@@ -72,7 +76,7 @@ CLI::App* add_play(CLI::App& app, PlayOptions& o) {
   play->add_option("scene", o.scene, "the scene's file; left out: scripts/arms.lua")->type_name("SCENE.lua");
   play->add_flag_callback(
       "--headless", [] {}, "without a window (today it always is)");
-  play->add_flag("--fast", o.fast, "as fast as it can instead of in real time; no OSC unless asked for");
+  play->add_flag("--fast", o.fast, "as fast as it can instead of in real time; no OSC, no OSCQuery unless asked for");
   play->add_option("--duration", o.duration, "end at that simulated time")->type_name("S")->check(positive_time());
   play->add_option("--ticks", o.ticks, "end after so many ticks")->type_name("N")->check(whole_number());
   play->add_option("--seed", o.seed, "seed of everything random; wins over sim.seed of the scene")
@@ -89,6 +93,10 @@ CLI::App* add_play(CLI::App& app, PlayOptions& o) {
                    "streams=pos+rot+relrot+relpos, bodies=arm*, errors=on")
       ->type_name("HOST:PORT[,...]|off")
       ->allow_extra_args(false);
+  play->add_option("--query", o.query,
+                   "where OSCQuery and the remote panel (for a browser) are; default 127.0.0.1 and the number of "
+                   "--osc-in; 0.0.0.0:9003 opens it to phones and tablets")
+      ->type_name("[ADDR:]PORT|off");
   play->add_flag("--osc-optional", o.osc_optional, "play on when a port can't be had");
   play->add_option("--package-path", o.package_paths, "a folder for package:// in URDF files")
       ->type_name("DIR")
@@ -128,8 +136,11 @@ struct CommandLine {
   std::string scene;        // describe
   std::string definitions;  // annotate
   ConsoleCommand console;
+  MonitorCommand monitor;
+  SendCommand send;
   NewCommand fresh;
   bool json = false;
+  bool markdown = false;
   std::vector<std::string> package_paths;
 };
 
@@ -147,7 +158,8 @@ void add_describe(CLI::App& app, CommandLine& line) {
   CLI::App* describe =
       app.add_subcommand("describe", "every address: path, the seed's message, type, unit, range, default, meaning");
   describe->add_option("scene", line.scene, "with a scene: every address that it has")->type_name("SCENE.lua");
-  describe->add_flag("--json", line.json, "for machines");
+  CLI::Option* json = describe->add_flag("--json", line.json, "for machines");
+  describe->add_flag("--markdown", line.markdown, "as docs/osc.md has it")->excludes(json);
 }
 
 void add_bench(CLI::App& app, CommandLine& line) {
@@ -168,6 +180,38 @@ void add_console(CLI::App& app, ConsoleCommand& command) {
       "  echo 'sim.gravity = vec3()' | limber console lines of a pipe; exit code 1 when any had an error");
   console->add_option("pid", command.pid, "which program, when several play")->type_name("PID");
   console->add_option("-e,--evaluate", command.expression, "evaluate this and end")->type_name("LUA");
+}
+
+void add_monitor(CLI::App& app, MonitorCommand& command) {
+  CLI::App* monitor = app.add_subcommand("monitor", "prints what a running program takes in (<) and sends out (>)");
+  monitor->footer(
+      "  limber monitor --in                          what comes in, with senders and times\n"
+      "  limber monitor '/physics/part/*'             of these addresses\n"
+      "  limber monitor --changes                     what becomes another, whoever sets it\n"
+      "  limber monitor --changes '/physics/body/arm1/motor/*/target'");
+  monitor->add_option("pattern", command.pattern, "of addresses, or with --changes of paths; left out: all")
+      ->type_name("PATTERN");
+  monitor->add_flag("--changes", command.changes, "values that change: every property, or what the pattern reaches");
+  CLI::Option* in = monitor->add_flag("--in", command.only_in, "only what comes in");
+  monitor->add_flag("--out", command.only_out, "only what goes out")->excludes(in);
+  monitor->add_option("--pid", command.pid, "which program, when several play")->type_name("PID");
+  monitor->add_option("--count", command.count, "end after so many lines")->type_name("N")->check(whole_number());
+}
+
+void add_send(CLI::App& app, SendCommand& command) {
+  CLI::App* send = app.add_subcommand("send", "sends one OSC message and prints what is answered");
+  send->footer(
+      "Words are numbers, true and false, else text; \"'1'\" is the text 1.\n"
+      "  limber send /physics/part/mass arm1 0.3\n"
+      "  limber send '/physics/body/arm*/motor/*/target' 0.5\n"
+      "  limber send /get /physics/sim/gravity\n"
+      "Exit codes: 1 it was refused; 3 nobody answers.");
+  send->add_option("address", command.address, "where to")->type_name("ADDRESS")->required();
+  send->add_option("args", command.words, "what")->type_name("ARGS");
+  send->add_option("--to", command.to, "another program or machine; default 127.0.0.1:9003")->type_name("[HOST:]PORT");
+  send->add_option("--wait", command.wait, "how long to wait for answers; 0: not at all")
+      ->type_name("S")
+      ->check(CLI::Range(0.0, 60.0));
 }
 
 void add_new(CLI::App& app, NewCommand& command) {
@@ -213,6 +257,8 @@ int run_command_line(int argc, char** argv) {
   add_describe(app, line);
   add_bench(app, line);
   add_console(app, line.console);
+  add_monitor(app, line.monitor);
+  add_send(app, line.send);
   add_new(app, line.fresh);
   CLI::App* annotate = app.add_subcommand("annotate", "definitions of all that scripts see, for editors (LuaCATS)");
   annotate->add_option("file", line.definitions, "where they go; left out: stdout")->type_name("FILE");
@@ -233,8 +279,14 @@ int run_command_line(int argc, char** argv) {
   }
   const std::string command = app.get_subcommands().front()->get_name();
   if (command == "inspect") return inspect_command(line.robot, line.json, line.package_paths);
+  if (command == "describe" && line.markdown) {
+    fmt::print("{}", describe_page());
+    return 0;
+  }
   if (command == "describe") return describe_command(line.scene, line.json);
   if (command == "console") return console_command(line.console);
+  if (command == "monitor") return monitor_command(line.monitor);
+  if (command == "send") return send_command(line.send);
   if (command == "new") return new_command(line.fresh);
   if (command == "annotate") return annotate_command(line.definitions);
   if (command == "bench") return bench_command(line.bench);

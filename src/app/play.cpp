@@ -13,6 +13,7 @@
 
 #include "app/exit_code.h"
 #include "app/paths.h"
+#include "app/query_doors.h"
 #include "app/scene_watch.h"
 #include "base/build_info.h"
 #include "base/log.h"
@@ -216,14 +217,30 @@ void open_console(ConsoleServer& console) {
   fmt::print(stderr, "limber: console {}\n", console.path());
 }
 
+using QueryWish = std::optional<std::vector<ListenAddress>>;
+
+// OSC's ports and OSCQuery's; the lines that say what is open
+Result<void> open_ports(const EngineLink& link, const OscOptions& osc, const QueryWish& wish, Network& network,
+                        QueryServer& query) {
+  if (Result<void> open = network.start(); !open) return open;
+  const std::optional<ListenAddress> at = query_address(wish, effective_plan(osc, link.osc_plan.read().get()));
+  const Result<void> open = at ? query.start(*at) : Result<void>();
+  if (!open && !osc.optional) return open;
+  if (!open) log_warning("{}", open.error());
+  for (const std::string& line : network.lines()) fmt::print(stderr, "limber: {}\n", line);
+  fmt::print(stderr, "limber: {}\n", query_line(at, query));
+  return {};
+}
+
 int play_scene(const PlayOptions& options, EngineOptions engine_options, const OscOptions& osc,
-               const sigset_t& signals) {
+               const QueryWish& query_wish, const sigset_t& signals) {
   EngineLink link;
   Engine engine(link, std::move(engine_options));
   Network network(link, osc, live_offsets());
   ConsoleServer console(link, {.folder = "", .scene = printable(options.scene)});
   std::optional<SceneWatch> scene_watch;
   if (!options.fast || options.watch) scene_watch.emplace(link, engine);
+  QueryServer query(link, query_doors(network, osc.allow));
   bool interrupted = false;
   {
     Show show(engine);
@@ -231,8 +248,8 @@ int play_scene(const PlayOptions& options, EngineOptions engine_options, const O
       if (listen(signals) == Heard::end) leave("ended while the scene was being read");
     }
     if (!show.result()) return fail(kInput, show.result().error());
-    if (const Result<void> open = network.start(); !open) return fail(kMachine, open.error());
-    for (const std::string& line : network.lines()) fmt::print(stderr, "limber: {}\n", line);
+    if (const Result<void> open = open_ports(link, osc, query_wish, network, query); !open)
+      return fail(kMachine, open.error());
     if (!options.fast) {
       open_console(console);
       fmt::print(stderr, "limber: playing headless; Ctrl+C ends it\n");
@@ -242,6 +259,7 @@ int play_scene(const PlayOptions& options, EngineOptions engine_options, const O
     interrupted = watch(show, engine, link, signals);
   }
   scene_watch.reset();
+  query.stop();
   network.stop();
   console.stop();
   return finish(options, engine, interrupted);
@@ -254,12 +272,15 @@ int play_command(const PlayOptions& options) {
   fmt::print(stderr, "limber {} ({}): {}\n", version(), commit(), printable(options.scene));
   Result<OscOptions> osc = parse_osc(options);
   if (!osc) return fail(kUsage, osc.error());
+  Result<QueryWish> query = parse_query(options.query);
+  if (!query) return fail(kUsage, query.error());
+  if (options.fast && !*query) query->emplace();  // no port either
   std::vector<std::string> looked;
   const std::string scene = find_scene(options.scene, looked);
   Result<EngineOptions> engine_options = parse_engine(options, scene);
   if (!engine_options) return fail(kUsage, engine_options.error());
   if (scene.empty()) return fail(kInput, no_scene(options.scene, looked));
-  return play_scene(options, std::move(*engine_options), *osc, signals);
+  return play_scene(options, std::move(*engine_options), *osc, *query, signals);
 }
 
 }  // namespace limber

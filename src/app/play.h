@@ -24,6 +24,7 @@ struct PlayOptions {
   std::string osc_allow;
   std::vector<std::string> osc_out;
   bool osc_optional = false;
+  std::string query;  ///< Empty: not given.
 };
 
 /// Plays; returns the exit code of product.md: 0 fine, 1 the input, 2 usage, 3 the machine. [main]

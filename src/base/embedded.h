@@ -1,4 +1,4 @@
-// Files that the build puts inside the program: the prelude, the annotations, the templates.
+// Files that the build puts inside the program: the prelude, the annotations, the templates, the panel.
 #pragma once
 
 #include <span>

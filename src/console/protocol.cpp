@@ -16,7 +16,7 @@ using Json = nlohmann::json;
 using Kind = ConsoleLine::Kind;
 
 // the member that tells what a line is
-constexpr std::array<std::pair<const char*, Kind>, 11> kWords = {{{"limber", Kind::hello},
+constexpr std::array<std::pair<const char*, Kind>, 14> kWords = {{{"limber", Kind::hello},
                                                                   {"done", Kind::done},
                                                                   {"value", Kind::value},
                                                                   {"error", Kind::error},
@@ -26,7 +26,10 @@ constexpr std::array<std::pair<const char*, Kind>, 11> kWords = {{{"limber", Kin
                                                                   {"warning", Kind::warning},
                                                                   {"fault", Kind::fault},
                                                                   {"missed", Kind::missed},
-                                                                  {"refused", Kind::refused}}};
+                                                                  {"refused", Kind::refused},
+                                                                  {"in", Kind::in},
+                                                                  {"out", Kind::out},
+                                                                  {"change", Kind::change}}};
 
 const char* word_of(Kind kind) {
   for (const auto& [word, each] : kWords) {
@@ -60,7 +63,11 @@ std::uint64_t number_in(const Json& json, const char* key) {
 }  // namespace
 
 std::string request_line(const ConsoleRequest& request) {
-  return text_of({{"id", request.id}, {request.complete ? "complete" : "evaluate", request.text}});
+  using Wish = ConsoleRequest::Wish;
+  if (request.wish == Wish::evaluate) return text_of({{"id", request.id}, {"evaluate", request.text}});
+  if (request.wish == Wish::complete) return text_of({{"id", request.id}, {"complete", request.text}});
+  const char* const what = request.wish == Wish::traffic ? "traffic" : "changes";
+  return text_of({{"id", request.id}, {"watch", what}, {"of", request.text}});
 }
 
 std::string hello_line(std::string_view version, int pid, std::string_view scene) {
@@ -104,6 +111,12 @@ std::string log_line(std::uint64_t id, const LogLine& line) {
   return text_of(json);
 }
 
+std::string traffic_line(bool in, double time, std::string_view end, std::string_view text) {
+  return text_of({{in ? "in" : "out", text}, {"time", time}, {"end", end}});
+}
+
+std::string change_line(double time, std::string_view text) { return text_of({{"change", text}, {"time", time}}); }
+
 std::string missed_line(std::uint64_t count) { return text_of({{"missed", count}}); }
 
 std::string refused_line(std::string_view why) { return text_of({{"refused", printable(why)}}); }
@@ -113,10 +126,18 @@ Result<ConsoleRequest> parse_request(std::string_view line) {
   if (json.is_discarded()) {
     return Error{"this is no request; one is a line of JSON such as {\"id\":1,\"evaluate\":\"sim.time\"}"};
   }
+  using Wish = ConsoleRequest::Wish;
   ConsoleRequest request;
   request.id = number_in(json, "id");
-  request.complete = json.contains("complete");
-  const char* key = request.complete ? "complete" : "evaluate";
+  if (json.contains("watch")) {
+    const std::string what = text_in(json, "watch");
+    if (what != "traffic" && what != "changes") return Error{"\"watch\" is \"traffic\" or \"changes\""};
+    request.wish = what == "traffic" ? Wish::traffic : Wish::changes;
+    request.text = text_in(json, "of");
+    return request;
+  }
+  request.wish = json.contains("complete") ? Wish::complete : Wish::evaluate;
+  const char* key = request.wish == Wish::complete ? "complete" : "evaluate";
   if (!json.contains(key) || !json[key].is_string())
     return Error{"a request has a text in \"evaluate\" or in \"complete\""};
   request.text = text_in(json, key);
@@ -140,6 +161,8 @@ Result<ConsoleLine> parse_line(std::string_view text) {
   line.count = number_in(json, "missed");
   line.version = text_in(json, "limber");
   line.pid = static_cast<int>(number_in(json, "pid"));
+  line.end = text_in(json, "end");
+  if (json.contains("time") && json["time"].is_number()) line.time = json["time"].get<double>();
   if (line.kind == Kind::names && json["names"].is_array()) {
     for (const Json& name : json["names"]) {
       if (name.is_string()) line.names.push_back(name.get<std::string>());

@@ -18,8 +18,14 @@ inline constexpr std::size_t kMostLine = 8 * kMostEvaluated;
 
 /// What a console asks for.
 struct ConsoleRequest {
+  enum class Wish : std::uint8_t {
+    evaluate,
+    complete,
+    traffic,  ///< To be told of messages that come in and go out; `text`: of addresses that this pattern matches.
+    changes,  ///< To be told of changed values; `text`: of what this pattern reaches, empty: of every property.
+  };
   std::uint64_t id = 0;  ///< The console's own number, which the answer repeats.
-  bool complete = false;
+  Wish wish = Wish::evaluate;
   std::string text;
 };
 
@@ -37,6 +43,9 @@ struct ConsoleLine {
     fault,       //
     missed,      ///< `count` lines of these three were too many.
     refused,     ///< `text` says why the connection ends.
+    in,          ///< A message came: `text`, from `end`, at `time`.
+    out,         ///< One went out to `end`.
+    change,      ///< A value is another: `text` is its path and value.
   };
   Kind kind = Kind::done;
   std::uint64_t id = 0;
@@ -46,6 +55,8 @@ struct ConsoleLine {
   std::uint64_t count = 0;
   std::string version;
   int pid = 0;
+  std::string end;
+  double time = 0;  ///< s, of a clock of the program's own.
 };
 
 /// Each with its line's end. Text from scripts has control characters escaped. [any]
@@ -53,6 +64,8 @@ std::string request_line(const ConsoleRequest& request);
 std::string hello_line(std::string_view version, int pid, std::string_view scene);
 std::string answer_line(std::uint64_t id, const Evaluation& said);
 std::string log_line(std::uint64_t id, const LogLine& line);
+std::string traffic_line(bool in, double time, std::string_view end, std::string_view text);
+std::string change_line(double time, std::string_view text);
 std::string missed_line(std::uint64_t count);
 std::string refused_line(std::string_view why);
 

@@ -62,8 +62,10 @@ void ConsoleServer::run() {
     let_in();
     hand_out_answers();
     for (auto& [number, visitor] : visitors_) {
-      visitor.receive([this, number = number](const ConsoleRequest& request) { return ask(number, request); });
+      visitor.receive([this, number = number](const ConsoleRequest& request) { return ask(number, request); },
+                      [this](const ConsoleRequest& request) { return make_watcher(link_, request); });
       visitor.tell_log();
+      visitor.tell_watched();
       visitor.send();
     }
     std::erase_if(visitors_, [](const auto& each) { return each.second.gone(); });
@@ -118,7 +120,8 @@ void ConsoleServer::hand_out_answers() {
 
 std::string ConsoleServer::ask(std::uint64_t visitor, const ConsoleRequest& request) {
   auto wish = std::make_shared<Evaluate>();
-  wish->wish = request.complete ? Evaluate::Wish::complete : Evaluate::Wish::run;
+  const bool completes = request.wish == ConsoleRequest::Wish::complete;
+  wish->wish = completes ? Evaluate::Wish::complete : Evaluate::Wish::run;
   wish->text = request.text;
   wish->answer = [mail = mail_, visitor, id = request.id](Evaluation said) {
     mail->answers.push({visitor, id, std::move(said)});

@@ -38,11 +38,11 @@ short Visitor::events() const {
   return static_cast<short>(events);
 }
 
-void Visitor::receive(const Ask& ask) {
+void Visitor::receive(const Ask& ask, const Watch& watch) {
   const bool has_line = in_.find('\n') != std::string::npos;
   if (!busy_ && !ends_ && !gone_ && !has_line && !waits_to_be_read()) read_some();
   std::string line;
-  while (!busy_ && !gone_ && !waits_to_be_read() && next_line(line)) handle(line, ask);
+  while (!busy_ && !gone_ && !waits_to_be_read() && next_line(line)) handle(line, ask, watch);
 }
 
 void Visitor::read_some() {
@@ -73,11 +73,17 @@ bool Visitor::next_line(std::string& line) {
   return true;
 }
 
-void Visitor::handle(const std::string& line, const Ask& ask) {
+void Visitor::handle(const std::string& line, const Ask& ask, const Watch& watch) {
   if (line.empty()) return;
   Result<ConsoleRequest> request = parse_request(line);
   if (!request) {
     say(answer_line(0, {Evaluation::Kind::error, request.error()}));
+    return;
+  }
+  if (request->wish == ConsoleRequest::Wish::traffic || request->wish == ConsoleRequest::Wish::changes) {
+    Result<std::unique_ptr<Watcher>> watcher = watch(*request);
+    say(answer_line(request->id, watcher ? Evaluation{} : Evaluation{Evaluation::Kind::error, watcher.error()}));
+    if (watcher) watcher_ = std::move(*watcher);
     return;
   }
   if (const std::string fault = ask(*request); !fault.empty()) {
@@ -105,13 +111,21 @@ void Visitor::tell_lines(std::uint64_t up_to, std::uint64_t id) {
     missed_ += line.number - seen_ - 1;  // the ring has gone round
     seen_ = line.number;
     if (line.level == LogLevel::info) continue;
-    if (waits_to_be_read()) {
-      missed_++;
-      continue;
-    }
-    if (missed_ > 0) say(missed_line(std::exchange(missed_, 0)));
-    say(log_line(id, line));
+    say_or_miss(log_line(id, line));
   }
+}
+
+void Visitor::tell_watched() {
+  if (watcher_ == nullptr || gone_ || ends_) return;
+  watcher_->tell([this](const std::string& line) { say_or_miss(line); },
+                 [this](std::uint64_t count) { missed_ += count; });
+}
+
+// one that does not read what it is told hears how much that was
+void Visitor::say_or_miss(std::string_view line) {
+  if (waits_to_be_read()) return (void)missed_++;
+  if (missed_ > 0) say(missed_line(std::exchange(missed_, 0)));
+  say(line);
 }
 
 void Visitor::send() {

@@ -61,7 +61,7 @@ Outcome Answers::get(std::span<const Arg> args) const {
   if (args.size() != 1 || !args[0].is_text()) return Outcome::refused("takes a path, such as /physics/sim/gravity");
   const Store& store = world_.store();
   const std::string& path = args[0].text;
-  const Result<std::vector<Place>> places = match_places(store, path, kMostValues + 1);
+  const Result<std::vector<Place>> places = match_places(store, path, work_, kMostValues + 1);
   if (!places) return Outcome::refused(places.error());
   if (places->size() > kMostValues) {
     return Outcome::refused(
@@ -76,6 +76,7 @@ Outcome Answers::get(std::span<const Arg> args) const {
     Message& answer = outcome.answers.emplace_back();
     answer.address = store.path(place.node) + "/" + place.row->name;
     for (std::uint32_t i = 0; i < place.row->width; i++) answer.args.push_back(Arg::of(values[i]));
+    if (place.row->type == RowType::text) answer.args.push_back(Arg::of(place.row->say(store.thing(place.node))));
   }
   if (outcome.answers.empty()) return Outcome::refused(fmt::format("'{}' is no value", printable(path)));
   return outcome;

@@ -10,7 +10,8 @@ namespace limber {
 
 class Answers {
  public:
-  Answers(World& world, HintBudget& hints) : world_(world), hints_(hints) {}
+  /// `work` is what patterns of a question may cost.
+  Answers(World& world, HintBudget& hints, PatternBudget& work) : world_(world), hints_(hints), work_(work) {}
 
   /// /list/bodies, /list/shapes, /list/groups; /list/parts, joints, motors, behaviors of a body: names in the streams'
   /// order; an empty text where there is none.
@@ -23,6 +24,7 @@ class Answers {
  private:
   World& world_;
   HintBudget& hints_;
+  PatternBudget& work_;
 };
 
 }  // namespace limber

@@ -70,6 +70,9 @@ class Applying {
 
   void run(LiveThings& things) {
     set_rows(a_.draft.id(), a_.world.id(), a_.difference.world);
+    const Visuals& drawn = a_.draft.visuals();
+    set_rows(drawn.id(), a_.world.visuals().id(), a_.difference.visuals);
+    set_rows(drawn.camera().id(), a_.world.visuals().camera().id(), a_.difference.camera);
     remove_bodies(things);
     shapes(things);
     bodies(things);
@@ -112,9 +115,12 @@ class Applying {
       const bool differs = next != a_.difference.shapes.end() && next->now == i;
       if (shape == nullptr) {
         shape = a_.world.find_shape(described.name());
-        if (shape == nullptr) shape = *a_.world.add_shape(described.name(), described.model());
+        const bool fresh = shape == nullptr;
+        if (fresh) shape = *a_.world.add_shape(described.name(), described.model());
         shape->become(described);
-        set_rows(described.id(), shape->id(), said_rows(a_.now.shapes[i]->rows));
+        // the colours that a robot's file gives a new one are not said
+        set_rows(described.id(), shape->id(),
+                 fresh ? described_rows(Shape::table()) : said_rows(a_.now.shapes[i]->rows));
       } else if (differs) {
         if (next->geometry) shape->become(described);
         set_rows(described.id(), shape->id(), next->rows);

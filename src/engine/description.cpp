@@ -108,6 +108,8 @@ BodyDescription describe_body(const Body& body) {
 Description describe(const World& world) {
   Description out;
   out.world = rows_of(world.store(), world.id());
+  out.visuals = rows_of(world.store(), world.visuals().id());
+  out.camera = rows_of(world.store(), world.visuals().camera().id());
   Shapes shapes;
   for (const auto& shape : world.shapes()) {
     out.shapes.push_back(describe_shape(world.store(), *shape));

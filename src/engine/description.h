@@ -83,6 +83,8 @@ struct BodyDescription {
 };
 struct Description {
   SaidRows world;
+  SaidRows visuals;
+  SaidRows camera;
   std::vector<std::shared_ptr<const ShapeDescription>> shapes;
   std::vector<BodyDescription> bodies;
   std::vector<GroupDescription> groups;

@@ -16,8 +16,8 @@ namespace {
 constexpr std::size_t kMostPaths = 16384;  // exact paths that are remembered
 
 // the classes whose things messages name by arguments
-std::array<const Table*, 4> named_classes() {
-  return {&World::table(), &Part::table(), &Joint::table(), &Motor::table()};
+std::array<const Table*, 6> named_classes() {
+  return {&World::table(), &Part::table(), &Joint::table(), &Motor::table(), &Camera::table(), &Shape::table()};
 }
 
 constexpr Irregular kIrregulars[] = {
@@ -25,6 +25,8 @@ constexpr Irregular kIrregulars[] = {
      "Force in N for one tick, world axes; rx ry rz: where, from the centre of mass."},
     {"/physics/behavior/parameter", "[body] behavior parameter value",
      "Sets a parameter, or active, of the behaviour of that name, in every body or one."},
+    {"/visuals/camera/projection", "fovy aspect near far",
+     "Sets these four of the camera; an aspect of 0: the window's."},
     {"/get", "path", "Answers with the row's address and value; a pattern with each."},
     {"/list/bodies", "", "Answers with all bodies' names, in the order of the streams."},
     {"/list/parts", "body", "Answers with the body and its parts' names."},
@@ -81,8 +83,10 @@ Dispatch::Dispatch(World& world) : world_(world), store_(world.store()) {
   for (const Irregular& irregular : kIrregulars) {
     const bool lists = irregular.address.starts_with("/list/");
     const bool behavior = irregular.address.starts_with("/physics/behavior/");
+    const bool camera = irregular.address.starts_with("/visuals/camera/");
     by_name_[std::string(irregular.address)].irregular = lists                         ? &Dispatch::list
                                                          : behavior                    ? &Dispatch::behavior_parameter
+                                                         : camera                      ? &Dispatch::projection
                                                          : irregular.address == "/get" ? &Dispatch::get
                                                                                        : &Dispatch::part_force;
   }
@@ -92,6 +96,15 @@ Dispatch::Dispatch(World& world) : world_(world), store_(world.store()) {
 }
 
 Outcome Dispatch::execute(const Message& message) {
+  const int most = std::min(PatternBudget::kMessage, std::max(work_.left, 0));
+  message_work_.left = most;
+  Outcome outcome = execute_one(message);
+  work_.left -= most - message_work_.left;
+  return outcome;
+}
+
+Outcome Dispatch::execute_one(const Message& message) {
+  writes_.clear();
   std::array<char, 96> buffer;
   const auto found = by_name_.find(plain_address(message.address, buffer));
   if (found == by_name_.end()) return by_path(message);
@@ -99,31 +112,39 @@ Outcome Dispatch::execute(const Message& message) {
   return entry.irregular != nullptr ? (this->*entry.irregular)(message) : by_name(entry, message);
 }
 
+NodeId Dispatch::only_thing(const Table& table) const {
+  if (&table == &World::table()) return world_.id();
+  return &table == &Camera::table() ? world_.visuals().camera().id() : NodeId{};
+}
+
 Outcome Dispatch::by_name(const ByName& entry, const Message& message) {
   const std::span<const Arg> args = message.args;
   const Row& row = *entry.row;
   places_.clear();
   const bool acts = row.kind == RowKind::action;
-  if (entry.table == &World::table()) {
-    places_.push_back({world_.id(), &row});
+  if (const NodeId only = only_thing(*entry.table); !only.null()) {
+    places_.push_back({only, &row});
     return acts ? act(args) : apply(true, args);
   }
+  const bool shapes = entry.table == &Shape::table();
   const Result<ValueSplit> split = split_value(row, args);
   if (!split) return Outcome::refused(split.error());
   const std::span<const Arg> names = args.first(args.size() - split->count);
-  if (names.size() > 2) {
-    return Outcome::refused(fmt::format("takes a body, a {} and {}; here are {} names", entry.table->name(),
-                                        takes_text(row), names.size()));
+  if (names.size() > (shapes ? 1 : 2)) {
+    return Outcome::refused(fmt::format("takes a {}{} and {}; here are {} names", shapes ? "" : "body, a ",
+                                        entry.table->name(), takes_text(row), names.size()));
   }
   for (const Arg& name : names) {
     if (name.kind == Arg::Kind::nil) return Outcome::refused("nothing stands where a name is expected");
   }
-  if (const Result<void> selected = selector_.select(*entry.table, row, names, places_); !selected) {
+  const Result<void> selected =
+      shapes ? selector_.select_shapes(row, names, places_) : selector_.select(*entry.table, row, names, places_);
+  if (!selected) {
     return Outcome::refused(split->guessed ? fmt::format("takes {}, not {}", takes_text(row), args.size())
                                            : selected.error());
   }
   const std::span<const Arg> value = args.last(split->count);
-  return acts ? act(value) : apply(Selector::single(names), value);
+  return acts ? act(value) : apply(Selector::single(names, shapes ? 1 : 2), value);
 }
 
 Outcome Dispatch::by_path(const Message& message) {
@@ -135,13 +156,14 @@ Outcome Dispatch::by_path(const Message& message) {
   }
   auto known = paths_.find(address);
   if (known == paths_.end()) {
-    const Result<Place> place = find_place(store_, address);
+    const Result<Place> place = find_place(store_, address, false);
     if (!place) {
-      const bool ours =
-          address.starts_with("/physics/body/") || address.starts_with("/physics/group/") || !address.starts_with("/");
-      return Outcome::unknown(ours ? place.error()
-                                   : fmt::format("there is no address {}{}", printable(address),
-                                                 answers_.near_address(address, addresses_)));
+      const bool shape = address.starts_with("/visuals/shape/") && std::ranges::count(address, '/') > 3;
+      const bool ours = shape || address.starts_with("/physics/body/") || address.starts_with("/physics/group/") ||
+                        !address.starts_with("/");
+      if (ours) return Outcome::unknown(hints_.take() ? find_place(store_, address).error() : place.error());
+      return Outcome::unknown(
+          fmt::format("there is no address {}{}", printable(address), answers_.near_address(address, addresses_)));
     }
     known = paths_.emplace(std::string(address), *place).first;
   }
@@ -157,8 +179,8 @@ Outcome Dispatch::by_path(const Message& message) {
 }
 
 Outcome Dispatch::by_pattern(const Message& message) {
-  Result<std::vector<Place>> places = match_places(store_, message.address);
-  if (!places) return Outcome::unknown(places.error());
+  Result<std::vector<Place>> places = match_places(store_, message.address, message_work_);
+  if (!places) return message_work_.over() ? Outcome::refused(places.error()) : Outcome::unknown(places.error());
   std::erase_if(*places, [](const Place& p) { return p.row == nullptr || p.row->kind == RowKind::readout; });
   if (places->empty()) return Outcome::refused("this pattern matches nothing that can be set");
   places_ = std::move(*places);
@@ -168,7 +190,11 @@ Outcome Dispatch::by_pattern(const Message& message) {
 Outcome Dispatch::apply(bool single, std::span<const Arg> value) {
   // first everything is looked at, then everything is set: nothing of a refused message is applied
   Outcome outcome = collect_writes(single, value);
-  if (outcome.kind == Outcome::Kind::refused) return outcome;
+  return outcome.kind == Outcome::Kind::refused ? outcome : set_all();
+}
+
+Outcome Dispatch::set_all() {
+  Outcome outcome;
   const std::uint64_t before = store_.kept_version();
   for (const Write& write : writes_) {
     const Result<SetOutcome> set =
@@ -252,7 +278,7 @@ Outcome Dispatch::part_force(const Message& message) {
   places_.clear();
   if (const Result<void> selected = selector_.select(Part::table(), row, names, places_); !selected)
     return Outcome::refused(selected.error());
-  if (Selector::single(names) && static_cast<Part*>(store_.thing(places_.front().node))->is_static())
+  if (Selector::single(names, 2) && static_cast<Part*>(store_.thing(places_.front().node))->is_static())
     return Outcome::refused(fmt::format("{} is static and never moves", thing_text(store_, places_.front().node)));
   for (const Place& place : places_) {
     Part& part = *static_cast<Part*>(store_.thing(place.node));
@@ -276,7 +302,25 @@ Outcome Dispatch::behavior_parameter(const Message& message) {
   const std::span<const Arg> things = args.first(names - 1);
   if (const Result<void> selected = selector_.select_behaviors(things, args[names - 1], places_); !selected)
     return Outcome::refused(selected.error());
-  return apply(Selector::single(things), args.subspan(names));
+  return apply(Selector::single(things, 2), args.subspan(names));
+}
+
+Outcome Dispatch::projection(const Message& message) {
+  constexpr const char* kRows[] = {"fovy", "aspect", "near", "far"};
+  if (message.args.size() != std::size(kRows))
+    return Outcome::refused("takes 4 numbers: fovy (degrees) aspect near far");
+  std::vector<Write> writes;
+  const NodeId camera = world_.visuals().camera().id();
+  for (std::size_t i = 0; i < std::size(kRows); i++) {
+    const Row& row = Camera::table().at(kRows[i]);
+    const Result<RowValues> value = coerce(row, std::span(message.args).subspan(i, 1));
+    if (!value) return Outcome::refused(fmt::format("{}: {}", row.name, value.error()));
+    writes.push_back({{camera, &row}, *value});
+  }
+  if (writes[3].values.values[0] <= writes[2].values.values[0])
+    return Outcome::refused("what is far must be further away than what is near");
+  writes_ = std::move(writes);
+  return set_all();
 }
 
 Outcome Dispatch::list(const Message& message) {

@@ -27,11 +27,23 @@ struct Irregular {
 
 class Dispatch {
  public:
+  /// Work of all patterns between two ticks; see PatternBudget.
+  static constexpr int kTickWork = 4 * PatternBudget::kMessage;
+
   explicit Dispatch(World& world);
 
   Outcome execute(const Message& message);
   /// Near names are looked for in so many messages between two calls; others are refused with a shorter text.
-  void begin_tick() { hints_.left = HintBudget::kPerTick; }
+  void begin_tick() {
+    hints_.left = HintBudget::kPerTick;
+    work_.left = kTickWork;
+  }
+  /// What the last message set.
+  struct Write {
+    Place place;
+    RowValues values;
+  };
+  std::span<const Write> written() const { return writes_; }
 
   /// The seed's address of a row: "/physics/part/mass"; empty where the class has none, or the row can't be set.
   static std::string seed_address(const Table& table, const Row& row);
@@ -45,10 +57,6 @@ class Dispatch {
     const Row* row = nullptr;
     Outcome (Dispatch::*irregular)(const Message&) = nullptr;
   };
-  struct Write {
-    Place place;
-    RowValues values;
-  };
   struct TextHash {
     using is_transparent = void;
     std::size_t operator()(std::string_view text) const { return std::hash<std::string_view>{}(text); }
@@ -56,15 +64,21 @@ class Dispatch {
   template <class T>
   using ByText = std::unordered_map<std::string, T, TextHash, std::equal_to<>>;
 
+  Outcome execute_one(const Message& message);
+  /// The one thing of a class that has one only, such as the world; else a null id.
+  NodeId only_thing(const Table& table) const;
   Outcome by_name(const ByName& entry, const Message& message);
   Outcome by_path(const Message& message);
   Outcome by_pattern(const Message& message);
   /// Sets `places_` to the value; many leave out those that can't take it, a single one is refused with the reason.
   Outcome apply(bool single, std::span<const Arg> value);
   Outcome collect_writes(bool single, std::span<const Arg> value);
+  /// Sets `writes_`.
+  Outcome set_all();
   /// Does the action of each of `places_`.
   Outcome act(std::span<const Arg> value);
   Outcome part_force(const Message& message);
+  Outcome projection(const Message& message);
   Outcome behavior_parameter(const Message& message);
   Outcome list(const Message& message);
   Outcome get(const Message& message);
@@ -73,14 +87,16 @@ class Dispatch {
   World& world_;
   Store& store_;
   HintBudget hints_;
-  Selector selector_{world_, hints_};
-  Answers answers_{world_, hints_};
+  PatternBudget work_{kTickWork};  // left of this tick
+  PatternBudget message_work_;     // left of this message
+  Selector selector_{world_, hints_, message_work_};
+  Answers answers_{world_, hints_, message_work_};
   ByText<ByName> by_name_;              // by plain address
   std::vector<std::string> addresses_;  // all of them, for near ones
   ByText<Place> paths_;                 // exact paths seen since the structure last changed
   std::uint64_t paths_version_ = 0;
   std::vector<Place> places_;  // scratch: what the message means
-  std::vector<Write> writes_;  // scratch: what it will write, once all of it is known to be right
+  std::vector<Write> writes_;  // what it will write, once all of it is known to be right
 };
 
 }  // namespace limber

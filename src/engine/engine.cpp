@@ -99,6 +99,7 @@ void Engine::reset() {
   }
   faults_ += before.health_events();
   stage_ = std::move(fresh);
+  images_.forget_store();
   if (stage_->scene != nullptr) stage_->scene->arm();  // while both were there, the new one ran interpreted
   replay_hand();
   begin_show();
@@ -190,6 +191,7 @@ void Engine::pass(bool may_step) {
   Stopwatch watch;
   requests_.serve();
   rerun();
+  const std::uint64_t asks = link_.image_asks.load();  // an image holds whatever had come when it was asked for
   drain();
   times_.commands = watch.lap();
 
@@ -214,6 +216,7 @@ void Engine::pass(bool may_step) {
 
   if (stage.world.take_reset_request()) reset();
   publish();
+  make_image(asks);
   if (was_paused_ != stage_->transport.paused()) send_transport();
   times_.snapshot = watch.lap();
   if (stage_->scene != nullptr) stage_->scene->collect_garbage();
@@ -224,6 +227,12 @@ void Engine::publish() {
   stage_->counters.tell();
   stage_->transport.tell(clock_.speed_reached());
   stage_->publisher.publish(stage_->transport.paused(), clock_.speed_reached());
+}
+
+void Engine::make_image(std::uint64_t asks) {
+  if (!images_.make(stage_->store, link_.snapshots.read(), asks)) return;
+  link_.wake_network();
+  link_.wake_query();
 }
 
 void Engine::drain() {
@@ -257,6 +266,10 @@ void Engine::execute(Message& message, const Origin& origin) {
     say_clamped(message, *outcome.clamped);
   }
   if (outcome.kept) hand_.remember(message);
+  if (origin.follows && outcome.kind == Outcome::Kind::applied) {
+    for (const Dispatch::Write& write : stage_->dispatch.written())
+      images_.note(stage_->store, origin, write.place, write.place.row == outcome.clamped);
+  }
   for (Message& answer : outcome.answers) push_out({Outgoing::To::sender, origin, std::move(answer)});
   if (outcome.kind == Outcome::Kind::refused) {
     link_.counters.refused.fetch_add(1, std::memory_order_relaxed);
@@ -309,6 +322,8 @@ void Engine::send_contacts() {
   }
 }
 
+void Engine::push_out(Outgoing out) { link_.push_out(std::move(out)); }
+
 void Engine::send_transport() {
   was_paused_ = stage_->transport.paused();
   push_out({Outgoing::To::event,
@@ -316,11 +331,6 @@ void Engine::send_transport() {
             {"/transport/state",
              {Arg::of(was_paused_), Arg::of(static_cast<double>(stage_->world.tick())), Arg::of(stage_->world.time()),
               Arg::of(clock_.speed_reached())}}});
-}
-
-void Engine::push_out(Outgoing out) {
-  link_.outbox.push(std::move(out));
-  link_.wake_network();
 }
 
 std::uint64_t Engine::state_hash() const {

@@ -13,6 +13,7 @@
 
 #include "engine/clock.h"
 #include "engine/hand.h"
+#include "engine/image_maker.h"
 #include "engine/link.h"
 #include "engine/reload.h"
 #include "engine/requests.h"
@@ -102,6 +103,7 @@ class Engine : private ScriptHost {
   void refuse(std::string_view address, const Origin& origin, std::string_view error);
   void call_handlers();
   void publish();
+  void make_image(std::uint64_t asks);
   void say_clamped(const Message& message, const Row& row);
   void send_contacts();
   void send_transport();
@@ -117,6 +119,7 @@ class Engine : private ScriptHost {
   PerformerHand hand_;
   Reload reload_;
   Requests requests_;
+  ImageMaker images_{link_.images};
   Clock clock_;
   PhaseTimes times_;
 

@@ -2,13 +2,16 @@
 // plan of ports out; counters. All of it may be used from any thread.
 #pragma once
 
+#include <atomic>
 #include <functional>
-#include <mutex>
+#include <utility>
 
 #include "base/inbox.h"
 #include "base/latest.h"
 #include "engine/command.h"
+#include "engine/image.h"
 #include "engine/snapshot.h"
+#include "engine/traffic.h"
 
 namespace limber {
 
@@ -17,17 +20,43 @@ struct EngineLink {
   static constexpr std::size_t kMostBytes = std::size_t{64} << 20;  ///< A datagram of 16 KiB may grow to 0.8 MiB.
   Inbox<Command> inbox{kMostItems, kMostBytes};
   Inbox<Outgoing> outbox{kMostItems, kMostBytes};
+  Inbox<Outgoing> query_outbox{kMostItems, kMostBytes};  ///< Answers to Hand::query.
   Latest<Snapshot> snapshots;
+  Latest<Image> images;  ///< Made when asked for.
+  std::atomic<std::uint64_t> image_asks{0};
   Latest<OscPlan> osc_plan;  ///< What the scene wishes; null until a scene has run, empty lists: it says nothing.
   Counters counters;
+  Traffic traffic;  ///< What OSC and OSCQuery took and sent, for monitors.
 
-  /// Called after something was put into `outbox` or `osc_plan` (an eventfd of the network's, say). Set before start.
+  /// Called after something was put into `outbox`, `osc_plan` or `images` (an eventfd of the network's, say). Set
+  /// before start.
   std::function<void()> wake_network = [] {};
+  /// The same for `query_outbox` and `images`.
+  std::function<void()> wake_query = [] {};
   /// Called when a parameter with `rerun` has changed: somebody calls Engine::reload(true), on a thread of his own.
   /// Null: the simulation runs the scene itself. Set before start.
   std::function<void()> rerun_scene;
   /// Called after something was put into `inbox`, so that a paused engine need not poll. Set by the engine.
   std::function<void()> wake_engine = [] {};
+
+  /// Asks for an image of a moment when every command that has been pushed before this call has been carried out: one
+  /// whose `asks` is at least what this gives.
+  std::uint64_t ask_image() {
+    const std::uint64_t number = image_asks.fetch_add(1) + 1;
+    wake_engine();
+    return number;
+  }
+  /// Puts what goes out to where it goes.
+  void push_out(Outgoing out) {
+    const bool answer = out.to == Outgoing::To::sender || out.to == Outgoing::To::error;
+    if (answer && out.origin.hand == Hand::query) {
+      query_outbox.push(out);
+      wake_query();
+      if (out.to == Outgoing::To::sender) return;
+    }
+    outbox.push(std::move(out));
+    wake_network();
+  }
 };
 
 }  // namespace limber

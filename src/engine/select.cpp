@@ -22,8 +22,8 @@ std::string_view view_of(const Arg& name, std::string& buffer) {
 
 std::string Selector::text(const Arg& name) { return name.is_text() ? name.text : number_text(name.number); }
 
-bool Selector::single(std::span<const Arg> names) {
-  if (names.size() != 2) return false;
+bool Selector::single(std::span<const Arg> names, std::size_t count) {
+  if (names.size() != count) return false;
   for (const Arg& name : names) {
     if (name.is_text() && is_pattern(name.text)) return false;
   }
@@ -40,7 +40,8 @@ void Selector::add(const Body& body, const Table& table, const Row& row, std::st
     return;
   }
   for (const NodeId id : store.children(group)) {
-    if (element.empty() || pattern_match(element, store.name(id))) out.push_back({id, &row});
+    if (work_.over()) return;
+    if (element.empty() || work_.match(element, store.name(id))) out.push_back({id, &row});
   }
 }
 
@@ -57,7 +58,8 @@ Result<void> Selector::select(const Table& table, const Row& row, std::span<cons
     }
   } else {
     for (const auto& body : world_.bodies()) {
-      if (!names.empty() && !pattern_match(first, body->name())) continue;
+      if (work_.over()) break;
+      if (!names.empty() && !work_.match(first, body->name())) continue;
       body_found = true;
       add(*body, table, row, second, out);
     }
@@ -66,6 +68,7 @@ Result<void> Selector::select(const Table& table, const Row& row, std::span<cons
   if (names.size() == 1 && !body_found) {
     for (const auto& body : world_.bodies()) add(*body, table, row, first, out);
   }
+  if (work_.over()) return too_much();
   if (!out.empty() || names.empty()) return {};
   if (names.size() == 2) return nothing_in(table.name(), first, second);
   if (body_found) return Error{fmt::format("body '{}' has no {}s", printable(first), table.name())};
@@ -93,16 +96,18 @@ Result<void> Selector::select_behaviors(std::span<const Arg> names, const Arg& p
       return;
     }
     for (const Behavior* behavior : body.behaviors()) {
-      if (pattern_match(name, behavior->name())) take(*behavior);
+      if (work_.match(name, behavior->name())) take(*behavior);
     }
   };
   if (!is_pattern(body_name)) {
     if (const Body* body = world_.find_body(body_name)) look_in(*body);
   } else {
     for (const auto& body : world_.bodies()) {
-      if (names.size() < 2 || pattern_match(body_name, body->name())) look_in(*body);
+      if (work_.over()) break;
+      if (names.size() < 2 || work_.match(body_name, body->name())) look_in(*body);
     }
   }
+  if (work_.over()) return too_much();
   if (!out.empty()) return {};
   if (without != nullptr) return no_parameter(*without, wanted);
   if (names.size() == 2) return nothing_in("behavior", body_name, name);
@@ -113,6 +118,28 @@ Result<void> Selector::select_behaviors(std::span<const Arg> names, const Arg& p
     }
   }
   return Error{fmt::format("there is no behavior '{}'{}", printable(name), hint(name, near))};
+}
+
+Result<void> Selector::select_shapes(const Row& row, std::span<const Arg> names, std::vector<Place>& out) const {
+  std::string buffer;
+  const std::string_view name = names.empty() ? "*" : view_of(names[0], buffer);
+  if (!is_pattern(name)) {
+    if (const Shape* shape = world_.find_shape(name)) out.push_back({shape->id(), &row});
+  } else {
+    for (const auto& shape : world_.shapes()) {
+      if (work_.over()) return too_much();
+      if (names.empty() || work_.match(name, shape->name())) out.push_back({shape->id(), &row});
+    }
+  }
+  if (!out.empty() || names.empty()) return {};
+  if (is_pattern(name)) return Error{fmt::format("no shape matches '{}'", printable(name))};
+  std::vector<std::string_view> near;
+  for (const auto& shape : world_.shapes()) near.push_back(shape->name());
+  return Error{fmt::format("there is no shape '{}'{}", printable(name), hint(name, near))};
+}
+
+Error Selector::too_much() {
+  return Error{"this is too much work for patterns; name more exactly, or send fewer at a time"};
 }
 
 Error Selector::no_parameter(const Behavior& behavior, std::string_view parameter) const {

@@ -44,6 +44,43 @@ void write_argument(const Arg& arg, osc::OutboundPacketStream& out) {
   }
 }
 
+template <class Int>
+Int as_integer(double value) {
+  constexpr auto kLow = static_cast<double>(std::numeric_limits<Int>::min());
+  // 2^63 is no int64; the next double below it is
+  constexpr double kHigh = sizeof(Int) == 8 ? 9223372036854774784.0 : std::numeric_limits<std::int32_t>::max();
+  return std::isfinite(value) ? static_cast<Int>(std::clamp(std::round(value), kLow, kHigh)) : Int{0};
+}
+
+void write_tagged(char tag, const Arg& arg, osc::OutboundPacketStream& out) {
+  switch (tag) {
+    case 'i':
+      out << as_integer<osc::int32>(arg.number);
+      return;
+    case 'h':
+      out << as_integer<osc::int64>(arg.number);
+      return;
+    case 'f':
+      out << as_float(arg.number);
+      return;
+    case 'T':
+      out << (arg.number != 0);
+      return;
+    case 's':
+      out << arg.text.c_str();
+      return;
+    case '[':
+      out << osc::BeginArray;
+      return;
+    case ']':
+      out << osc::EndArray;
+      return;
+    default:
+      out << osc::OscNil;
+      return;
+  }
+}
+
 // runs oscpack's calls; none throws where the size was computed
 template <class Write>
 std::span<const char> write_packet(PacketBuffer& buffer, const Write& write) {
@@ -65,6 +102,23 @@ std::span<const char> encode_message(const Message& message, PacketBuffer& buffe
   return write_packet(buffer, [&](osc::OutboundPacketStream& out) {
     out << osc::BeginMessage(message.address.c_str());
     for (const Arg& arg : message.args) write_argument(arg, out);
+    out << osc::EndMessage;
+  });
+}
+
+std::span<const char> encode_tagged(const Message& message, std::string_view tags, PacketBuffer& buffer) {
+  const auto takes_one = [](char tag) { return tag != '[' && tag != ']'; };
+  LIMBER_CHECK(static_cast<std::size_t>(std::ranges::count_if(tags, takes_one)) == message.args.size());
+  std::size_t size = padded(std::strlen(message.address.c_str())) + padded(1 + tags.size());
+  for (const Arg& arg : message.args) size += arg.is_text() ? padded(std::strlen(arg.text.c_str())) : 8;
+  if (size > kLargestPacket) return {};
+  return write_packet(buffer, [&](osc::OutboundPacketStream& out) {
+    out << osc::BeginMessage(message.address.c_str());
+    auto arg = message.args.begin();
+    for (const char tag : tags) {
+      if (takes_one(tag) && arg == message.args.end()) break;
+      write_tagged(tag, takes_one(tag) ? *arg++ : Arg{}, out);
+    }
     out << osc::EndMessage;
   });
 }

@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <span>
+#include <string_view>
 
 #include "base/message.h"
 #include "osc/wire.h"
@@ -19,6 +20,10 @@ struct PacketBuffer {
 /// Writes a message: numbers as f (clamped to float's range), booleans as i 0 or 1, nothing as i 0, text as s up to
 /// its first NUL. Empty when it is larger than a datagram. The span lies in `buffer`. [any]
 std::span<const char> encode_message(const Message& message, PacketBuffer& buffer);
+
+/// Writes the arguments as the tags say: i h f (numbers, clamped), T (a truth, as T or F), s, N; arrays in [ ]. Tags
+/// fit the arguments. Empty when it is larger than a datagram. [any]
+std::span<const char> encode_tagged(const Message& message, std::string_view tags, PacketBuffer& buffer);
 
 /// `/pong <tick i> <time f>`; ticks beyond 31 bits begin again at 0. [any]
 std::span<const char> encode_pong(std::uint64_t tick, double time, PacketBuffer& buffer);

@@ -21,17 +21,18 @@ Network::Network(EngineLink& link, OscOptions options, const LiveOffsets& offset
       options_(std::move(options)),
       clock_(std::move(clock)),
       wake_(std::make_shared<Wake>()),
-      receiver_(link, options_.allow,
-                {[this](const Outgoing& out) { sender_.send(out); },
-                 [this](const Origin& to) {
-                   const std::shared_ptr<const Snapshot> newest = link_.snapshots.read();
-                   sender_.pong(to, newest ? newest->tick : 0, newest ? newest->time : 0);
-                 }},
-                clock_),
+      receiver_(
+          link, options_.allow,
+          {[this](const Outgoing& out) { out.origin.hand == Hand::query ? link_.push_out(out) : sender_.send(out); },
+           [this](const Origin& to) { pong(to); },
+           [this](const Message& message, const Origin& origin) { return subscribers_.take(message, origin); },
+           [this](const Origin& origin) { return subscribers_.follows(origin); }},
+          clock_),
       sender_(
-          link.counters, [this](const Endpoint& sender) { return receiver_.socket_of(sender); }, clock_),
+          link.counters, link.traffic, [this](const Endpoint& sender) { return receiver_.socket_of(sender); }, clock_),
       names_(std::move(look_up), [wake = wake_] { wake->ring(); }),
-      streams_(link, offsets, clock_) {
+      streams_(link, offsets, clock_),
+      subscribers_(link, clock_, [this](const Outgoing& out) { sender_.send(out); }) {
   link_.wake_network = [wake = wake_] { wake->ring(); };
 }
 
@@ -86,8 +87,11 @@ void Network::run() {
     wait_for_something();
     wake_->answer();
     for (const int fd : descriptors_) receiver_.receive(fd);
+    take_packets();
     receiver_.release_due();
     apply_new_plan();
+    subscribers_.work();
+    aim_at_subscribers();
     send_outbox();
     streams_.send_due(sender_.fd());
   }
@@ -98,7 +102,9 @@ void Network::wait_for_something() {
   polled.push_back({wake_->fd(), POLLIN, 0});
   for (const int fd : descriptors_) polled.push_back({fd, POLLIN, 0});
   std::optional<std::int64_t> wait = streams_.wait();
-  if (const auto held = receiver_.wait(); held && (!wait || *held < *wait)) wait = held;
+  for (const auto other : {receiver_.wait(), subscribers_.wait()}) {
+    if (other && (!wait || *other < *wait)) wait = other;
+  }
   timespec limit{};
   if (wait) limit = {*wait / 1'000'000'000, *wait % 1'000'000'000};
   // interrupted or not: the loop looks at everything anyway
@@ -136,7 +142,7 @@ std::vector<std::string> Network::aim(bool wait_for_names) {
     faults.push_back(std::move(fault));
   }
   sender_.set_targets(targets_);
-  streams_.set_targets(targets_);
+  aim_streams();
   renew_lines();
   return faults;
 }
@@ -161,6 +167,37 @@ void Network::apply_new_plan() {
   if (!other && !found) return;
   for (const std::string& fault : other ? apply(plan, false) : aim(false)) log_error("{}", fault);
   for (const std::string& line : lines()) log_info("{}", line);
+}
+
+void Network::aim_streams() {
+  std::vector<Target> all = targets_;
+  std::ranges::move(subscribers_.targets(), std::back_inserter(all));
+  streams_.set_targets(all);
+}
+
+void Network::aim_at_subscribers() {
+  if (!subscribers_.take_news()) return;
+  sender_.set_subscribers(subscribers_.ends());
+  aim_streams();
+}
+
+bool Network::take(const Origin& origin, std::string packet) {
+  if (!packets_.push({origin, std::move(packet)})) return false;
+  wake_->ring();
+  return true;
+}
+
+void Network::take_packets() {
+  packets_.drain(taken_);
+  for (const Packet& p : taken_) receiver_.take(p.bytes.data(), p.bytes.size(), p.origin);
+}
+
+void Network::pong(const Origin& to) {
+  const std::shared_ptr<const Snapshot> newest = link_.snapshots.read();
+  const std::uint64_t tick = newest ? newest->tick : 0;
+  const double time = newest ? newest->time : 0;
+  if (to.hand != Hand::query) return sender_.pong(to, tick, time);
+  link_.push_out({Outgoing::To::sender, to, {"/pong", {Arg::of(static_cast<double>(tick)), Arg::of(time)}}});
 }
 
 void Network::send_outbox() {

@@ -17,6 +17,7 @@
 #include "osc/receiver.h"
 #include "osc/sender.h"
 #include "osc/streams.h"
+#include "osc/subscribers.h"
 
 namespace limber {
 
@@ -36,6 +37,10 @@ class Network {
   /// Ends the thread at once and closes everything. Idempotent. [main]
   void stop();
 
+  /// A packet that came by another way than UDP: looked at and carried out like one that did. Answers go by
+  /// EngineLink::push_out. False: too many wait. [any]
+  bool take(const Origin& origin, std::string packet);
+
   /// "OSC in 127.0.0.1:9003", "OSC out 127.0.0.1:9005 (pos+rot+relrot at 60 Hz)": what is open now. [any]
   std::vector<std::string> lines() const;
   /// The listening ends as bound, with the port that the system chose where 0 was asked for. [any]
@@ -48,7 +53,17 @@ class Network {
   std::vector<std::string> aim(bool wait_for_names);
   void renew_lines();
   void apply_new_plan();
+  void aim_at_subscribers();
+  void aim_streams();
+  void pong(const Origin& to);
+  void take_packets();
   void send_outbox();
+
+  struct Packet {
+    Origin origin;
+    std::string bytes;
+    friend std::size_t weight_of(const Packet& p) { return sizeof p + p.bytes.capacity(); }
+  };
 
   EngineLink& link_;
   const OscOptions options_;
@@ -58,6 +73,9 @@ class Network {
   Sender sender_;
   HostNames names_;
   Streams streams_;
+  Subscribers subscribers_;
+  Inbox<Packet> packets_{8192, std::size_t{16} << 20};
+  std::vector<Packet> taken_;
   std::shared_ptr<const OscPlan> seen_plan_;
   OscPlan plan_;
   std::vector<Target> targets_;

@@ -1,6 +1,7 @@
 // Each parser names the option, what was written, and how it is written right.
 #include "osc/options.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include <fmt/format.h>
@@ -12,7 +13,6 @@ namespace limber {
 
 namespace {
 
-constexpr const char* kInForm = "write --osc-in [ADDR:]PORT, such as 9003 or 0.0.0.0:9003, or off";
 constexpr const char* kOutForm =
     "write --osc-out HOST:PORT[,rate=60,bundle=1472,streams=pos+rot,bodies=arm*,errors=on], or off";
 constexpr const char* kAllowForm = "write --osc-allow 192.168.1.0/24, or several separated by commas";
@@ -103,7 +103,13 @@ bool Cidr::holds(std::uint32_t address) const {
   return (address & mask) == (ip & mask);
 }
 
-Result<std::vector<ListenAddress>> parse_osc_in(std::string_view text) {
+bool holds(const std::vector<Cidr>& list, std::uint32_t address) {
+  return list.empty() || std::ranges::any_of(list, [&](const Cidr& c) { return c.holds(address); });
+}
+
+Result<std::vector<ListenAddress>> parse_osc_in(std::string_view text) { return parse_listen("--osc-in", text); }
+
+Result<std::vector<ListenAddress>> parse_listen(std::string_view option, std::string_view text) {
   std::vector<ListenAddress> addresses;
   if (text == "off") return addresses;
   for (const std::string_view piece : split(text, ',')) {
@@ -113,7 +119,9 @@ Result<std::vector<ListenAddress>> parse_osc_in(std::string_view text) {
     if (colon != std::string_view::npos) address.address = piece.substr(0, colon);
     const std::optional<std::uint16_t> port = parse_port(port_text);
     if (!port || address.address.empty()) {
-      return Error{fmt::format("--osc-in '{}': no port in '{}'; {}", printable(text), printable(piece), kInForm)};
+      return Error{
+          fmt::format("{0} '{1}': no port in '{2}'; write {0} [ADDR:]PORT, such as 9003 or 0.0.0.0:9003, or off",
+                      option, printable(text), printable(piece))};
     }
     address.port = *port;
     addresses.push_back(address);

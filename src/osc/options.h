@@ -20,6 +20,9 @@ struct Cidr {
   bool holds(std::uint32_t address) const;
 };
 
+/// Whether one of them holds it; an empty list lets everyone in. [any]
+bool holds(const std::vector<Cidr>& list, std::uint32_t address);
+
 /// The command line's part. An empty list that is given means off.
 struct OscOptions {
   std::optional<std::vector<ListenAddress>> in;  ///< `--osc-in`; nothing: the scene or the default decides.
@@ -30,6 +33,8 @@ struct OscOptions {
 
 /// `[ADDR:]PORT` or `off`; several, separated by commas. Port 0 lets the system choose. [any]
 Result<std::vector<ListenAddress>> parse_osc_in(std::string_view text);
+/// The same for another option that says where to listen: `--query [ADDR:]PORT|off`. [any]
+Result<std::vector<ListenAddress>> parse_listen(std::string_view option, std::string_view text);
 
 /// `HOST:PORT[,rate=60,bundle=off|1472|8192|65504,streams=pos+rot+relrot+relpos|none,bodies=arm*,errors=on|off]`, or
 /// `off`, which gives no target. Each `--osc-out` on the command line is one call. [any]

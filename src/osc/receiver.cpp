@@ -14,6 +14,7 @@
 #include "base/log.h"
 #include "base/text.h"
 #include "osc/decode.h"
+#include "osc/subscribers.h"
 #include "osc/validate.h"
 
 namespace limber {
@@ -161,8 +162,9 @@ void Receiver::take_from(Listening& socket, const char* data, std::size_t size, 
   take(data, size, from);
 }
 
-void Receiver::take(const char* data, std::size_t size, const Endpoint& from) {
-  if (!allowed(from)) {
+void Receiver::take(const char* data, std::size_t size, Origin origin) {
+  const Endpoint from{origin.ip, origin.port};
+  if (!allowed(from.ip)) {
     link_.counters.denied.fetch_add(1, std::memory_order_relaxed);
     warn_seldom(not_allowed_,
                 [&] { return fmt::format("OSC from {} ignored: --osc-allow does not hold it", endpoint_text(from)); });
@@ -177,14 +179,26 @@ void Receiver::take(const char* data, std::size_t size, const Endpoint& from) {
     });
     return;
   }
-  const Origin origin{Hand::osc, from.ip, from.port};
   link_.counters.received.fetch_add(decoded->messages.size() + decoded->refused.size(), std::memory_order_relaxed);
+  if (link_.traffic.watched()) note_traffic(origin, *decoded);
   for (const RefusedMessage& r : decoded->refused) refuse(origin, r.address, r.text);
 
   // a ping asks this thread, not the simulation
   const auto pings = std::erase_if(decoded->messages, [](const Message& m) { return m.address == "/ping"; });
   for (std::size_t i = 0; i < pings; i++) answers_.pong(origin);
+  std::erase_if(decoded->messages, [&](const Message& m) {
+    if (!Subscribers::is_one(m)) return false;
+    if (const Result<void> done = answers_.subscribe(m, origin); !done) refuse(origin, m.address, done.error());
+    return true;
+  });
+  origin.follows = origin.follows || answers_.follows(origin);
   if (!decoded->messages.empty()) deliver(decoded->time_tag, {std::move(decoded->messages), origin});
+}
+
+void Receiver::note_traffic(const Origin& origin, const Decoded& packet) {
+  const std::string end = endpoint_text({origin.ip, origin.port}) + (origin.hand == Hand::query ? " (WebSocket)" : "");
+  for (const Message& message : packet.messages) link_.traffic.note(true, end, message);
+  for (const RefusedMessage& refused : packet.refused) link_.traffic.note(true, end, {refused.address, {}});
 }
 
 void Receiver::deliver(std::uint64_t time_tag, Command command) {
@@ -253,8 +267,6 @@ int Receiver::socket_of(const Endpoint& sender) const {
   return ours ? known.fd : -1;
 }
 
-bool Receiver::allowed(const Endpoint& from) const {
-  return allow_.empty() || std::ranges::any_of(allow_, [&](const Cidr& c) { return c.holds(from.ip); });
-}
+bool Receiver::allowed(std::uint32_t ip) const { return holds(allow_, ip); }
 
 }  // namespace limber

@@ -10,8 +10,10 @@
 #include <string>
 #include <vector>
 
+#include "base/result.h"
 #include "engine/link.h"
 #include "osc/clock.h"
+#include "osc/decode.h"
 #include "osc/held.h"
 #include "osc/options.h"
 #include "osc/seldom.h"
@@ -23,6 +25,10 @@ namespace limber {
 struct ReceiverAnswers {
   std::function<void(const Outgoing&)> error = [](const Outgoing&) {};
   std::function<void(const Origin&)> pong = [](const Origin&) {};
+  std::function<Result<void>(const Message&, const Origin&)> subscribe = [](const Message&, const Origin&) {
+    return Result<void>();
+  };
+  std::function<bool(const Origin&)> follows = [](const Origin&) { return false; };
 };
 
 /// [net], but for what says otherwise
@@ -43,7 +49,11 @@ class Receiver {
   /// after it.
   void receive(int fd);
   /// One datagram, as if it had come in by a socket. The fuzz target begins here.
-  void take(const char* data, std::size_t size, const Endpoint& from);
+  void take(const char* data, std::size_t size, const Endpoint& from) {
+    take(data, size, {Hand::osc, from.ip, from.port});
+  }
+  /// A packet that came by another way.
+  void take(const char* data, std::size_t size, Origin origin);
   /// Gives the engine the held bundles that are due, and wakes it when anything came since the last call.
   void release_due();
   std::optional<std::int64_t> wait() const { return held_.wait(); }
@@ -63,11 +73,12 @@ class Receiver {
 
   std::optional<std::string> open(const ListenAddress& address);
   void take_from(Listening& socket, const char* data, std::size_t size, const Endpoint& from);
+  void note_traffic(const Origin& origin, const Decoded& packet);
   void deliver(std::uint64_t time_tag, Command command);
   void push(Command command);
   void refuse(const Origin& origin, const std::string& address, const std::string& text);
   void note_kernel_drops(Listening& socket, std::uint32_t count);
-  bool allowed(const Endpoint& from) const;
+  bool allowed(std::uint32_t ip) const;
   template <class Text>
   void warn_seldom(Seldom& kind, const Text& text);
 

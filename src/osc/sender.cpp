@@ -13,6 +13,7 @@
 
 #include "base/log.h"
 #include "base/text.h"
+#include "osc/tap.h"
 
 namespace limber {
 
@@ -39,8 +40,9 @@ bool answerable(const Message& error) {
 
 }  // namespace
 
-Sender::Sender(Counters& counters, std::function<int(const Endpoint&)> reply_socket, const NetClock& clock)
-    : counters_(counters), reply_socket_(std::move(reply_socket)), clock_(clock) {}
+Sender::Sender(Counters& counters, Traffic& traffic, std::function<int(const Endpoint&)> reply_socket,
+               const NetClock& clock)
+    : counters_(counters), traffic_(traffic), reply_socket_(std::move(reply_socket)), clock_(clock) {}
 
 Result<void> Sender::open() {
   Result<Socket> socket = open_udp({});
@@ -73,8 +75,10 @@ void Sender::send(const Outgoing& out) {
       to_origin(out.origin, packet, true);
       to_targets(packet, true);
       return;
-    case Outgoing::To::targets:
     case Outgoing::To::event:
+      to_subscribers(packet);
+      [[fallthrough]];
+    case Outgoing::To::targets:
       to_targets(packet, false);
       return;
   }
@@ -85,8 +89,8 @@ void Sender::pong(const Origin& to, std::uint64_t tick, double time) {
 }
 
 void Sender::to_origin(const Origin& origin, std::span<const char> packet, bool answer) {
-  // a message from the panel or the command line has no address to answer to
-  if (origin.ip == 0 || origin.port == 0) return;
+  // a message from the panel or the command line has no address to answer to, one by WebSocket not here
+  if (origin.ip == 0 || origin.port == 0 || origin.hand == Hand::query) return;
   const Endpoint to{origin.ip, origin.port};
   const int listening = answer ? reply_socket_(to) : -1;
   datagram(listening >= 0 ? listening : socket_.fd(), to, packet);
@@ -98,11 +102,19 @@ void Sender::to_targets(std::span<const char> packet, bool only_those_wanting_er
   }
 }
 
+void Sender::to_subscribers(std::span<const char> packet) {
+  for (const Endpoint& end : subscribers_) {
+    const bool target_too = std::ranges::any_of(targets_, [&](const Target& t) { return t.at == end; });
+    if (!target_too) datagram(socket_.fd(), end, packet);
+  }
+}
+
 void Sender::datagram(int fd, const Endpoint& to, std::span<const char> packet) {
   const sockaddr_in address = socket_address(to);
   const auto* where = reinterpret_cast<const sockaddr*>(&address);
   if (sendto(fd, packet.data(), packet.size(), MSG_DONTWAIT | MSG_NOSIGNAL, where, sizeof address) >= 0) {
     counters_.sent.fetch_add(1, std::memory_order_relaxed);
+    if (traffic_.watched()) note_sent(traffic_, to, packet);
     return;
   }
   counters_.unsent.fetch_add(1, std::memory_order_relaxed);

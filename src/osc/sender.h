@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "engine/command.h"
+#include "engine/traffic.h"
 #include "osc/clock.h"
 #include "osc/encode.h"
 #include "osc/error_limit.h"
@@ -28,12 +29,14 @@ struct Target {
 class Sender {
  public:
   /// `reply_socket` gives the listening socket of a sender's question, or -1.
-  Sender(Counters& counters, std::function<int(const Endpoint&)> reply_socket, const NetClock& clock);
+  Sender(Counters& counters, Traffic& traffic, std::function<int(const Endpoint&)> reply_socket, const NetClock& clock);
 
   Result<void> open();
   void close() { socket_ = Socket(); }
   int fd() const { return socket_.fd(); }
   void set_targets(std::vector<Target> targets) { targets_ = std::move(targets); }
+  /// Who gets events beside them.
+  void set_subscribers(std::vector<Endpoint> ends) { subscribers_ = std::move(ends); }
 
   /// Sends to whom it is for. Refused messages are answered ten times a second per sender, and never when what was
   /// refused is itself an answer or a stream: two programs aimed at each other fall silent.
@@ -43,13 +46,16 @@ class Sender {
  private:
   void to_origin(const Origin& origin, std::span<const char> packet, bool answer);
   void to_targets(std::span<const char> packet, bool only_those_wanting_errors);
+  void to_subscribers(std::span<const char> packet);
   void datagram(int fd, const Endpoint& to, std::span<const char> packet);
 
   Counters& counters_;
+  Traffic& traffic_;
   std::function<int(const Endpoint&)> reply_socket_;
   const NetClock& clock_;
   Socket socket_;
   std::vector<Target> targets_;
+  std::vector<Endpoint> subscribers_;
   ErrorLimit limit_;
   PacketBuffer buffer_;
   Seldom failed_, too_large_;

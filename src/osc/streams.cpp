@@ -8,6 +8,7 @@
 #include "base/log.h"
 #include "base/text.h"
 #include "osc/batch.h"
+#include "osc/tap.h"
 
 namespace limber {
 
@@ -58,12 +59,22 @@ void Streams::send_frame(int fd, Stream& stream, const Snapshot& snapshot) {
   const BatchResult result =
       send_batch(fd, stream.target.at, stream.frame.bytes(), stream.frame.datagram_sizes(), stream.segmentation);
   link_.counters.sent.fetch_add(result.sent, std::memory_order_relaxed);
+  if (link_.traffic.watched()) note_frame(stream, result.sent);
   if (result.error == 0) return;
   link_.counters.unsent.fetch_add(stream.frame.datagram_sizes().size() - result.sent, std::memory_order_relaxed);
   if (const auto more = lost_.ask(clock_.steady())) {
     log_warning("OSC out to {}: {} of {} datagrams of a frame not sent: {}; fewer streams, bodies or frames help{}",
                 endpoint_text(stream.target.at), stream.frame.datagram_sizes().size() - result.sent,
                 stream.frame.datagram_sizes().size(), std::generic_category().message(result.error), *more);
+  }
+}
+
+void Streams::note_frame(const Stream& stream, std::size_t datagrams) {
+  std::span<const char> left = stream.frame.bytes();
+  for (const std::size_t size : stream.frame.datagram_sizes()) {
+    if (datagrams-- == 0) return;
+    note_sent(link_.traffic, stream.target.at, left.first(size));
+    left = left.subspan(size);
   }
 }
 

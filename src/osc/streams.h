@@ -38,6 +38,7 @@ class Streams {
   };
 
   void send_frame(int fd, Stream& stream, const Snapshot& snapshot);
+  void note_frame(const Stream& stream, std::size_t datagrams);
 
   EngineLink& link_;
   const LiveOffsets offsets_;

@@ -5,6 +5,7 @@
 #include <string_view>
 #include <vector>
 
+#include "params/pattern_budget.h"
 #include "params/store.h"
 
 namespace limber {
@@ -16,11 +17,13 @@ struct Place {
 };
 
 /// The place of an exact path such as "/physics/body/arm/part/tip/mass". Classes' and rows' names are compared by the
-/// one naming rule, names of things exactly (%20 style undone). The error names the part that fails and near names.
-Result<Place> find_place(const Store& store, std::string_view path);
+/// one naming rule, names of things exactly (%20 style undone). The error names the part that fails and, if `hint` says
+/// so, near names, which are looked for among all that there are.
+Result<Place> find_place(const Store& store, std::string_view path, bool hint = true);
 
 /// Every row that an OSC pattern reaches, in tree order: `?` `*` `[a-z]` `[!a]` `{a,b}` within a name, `//` any depth.
-/// At most `limit` places. An error only where the pattern is none.
-Result<std::vector<Place>> match_places(const Store& store, std::string_view pattern, std::size_t limit = 1000000);
+/// At most `limit` places. Errors: it is no pattern, or more work than the budget allows.
+Result<std::vector<Place>> match_places(const Store& store, std::string_view pattern, PatternBudget& budget,
+                                        std::size_t limit = 1000000);
 
 }  // namespace limber

@@ -17,6 +17,7 @@ std::uint32_t width_of(RowType type) {
     case RowType::quat:
       return 4;
     case RowType::none:
+    case RowType::text:
       return 0;
     default:
       return 1;
@@ -24,7 +25,8 @@ std::uint32_t width_of(RowType type) {
 }
 
 std::string_view type_name(RowType type) {
-  constexpr std::string_view kNames[] = {"number", "integer", "boolean", "choice", "vec3", "flags3", "quat", "action"};
+  constexpr std::string_view kNames[] = {"number", "integer", "boolean", "choice", "vec3",
+                                         "flags3", "quat",    "action",  "text"};
   return kNames[static_cast<std::size_t>(type)];
 }
 
@@ -132,6 +134,12 @@ Row flags3(std::string name, std::array<bool, 3> initial, std::string doc) {
 Row quat(std::string name, std::string doc) {
   Row row = make(std::move(name), RowType::quat, "", -1, 1, std::move(doc));
   row.initial = {0, 0, 0, 1};
+  return row;
+}
+
+Row text(std::string name, std::string doc) {
+  Row row = make(std::move(name), RowType::text, "", 0, 0, std::move(doc));
+  row.kind = RowKind::readout;
   return row;
 }
 

@@ -30,6 +30,7 @@ enum class RowType : std::uint8_t {
   flags3,  ///< Three booleans, one an axis.
   quat,    ///< x y z w.
   none,    ///< Actions: what they take stands in `min_args`, `max_args`.
+  text,    ///< What a thing says: a readout without numbers.
 };
 
 /// How many numbers a value of the type has.
@@ -59,6 +60,7 @@ struct Row {
   void (*effect)(void* thing) = nullptr;  ///< Brings a changed value into the world; once, before the next step.
   void (*read)(const void* thing, double* out) = nullptr;                 ///< A view: computed when asked, not stored.
   void (*write)(void* thing, const double* in) = nullptr;                 ///< A view's way to the rows behind it.
+  std::string_view (*say)(const void* thing) = nullptr;                   ///< A text's words, until the thing changes.
   Result<void> (*refuse)(const void* thing, const double* in) = nullptr;  ///< Why this thing can't take this value.
   Result<void> (*act)(void* thing, std::span<const double> args) = nullptr;
   void (*written)(void* thing, const Row& row) = nullptr;  ///< Told at once of each write, even of the same value.
@@ -124,6 +126,7 @@ Row choice(std::string name, std::vector<std::string> labels, std::uint32_t init
 Row vec3(std::string name, std::string unit, std::array<double, 3> initial, double min, double max, std::string doc);
 Row flags3(std::string name, std::array<bool, 3> initial, std::string doc);
 Row quat(std::string name, std::string doc);
+Row text(std::string name, std::string doc);
 Row action(std::string name, std::uint32_t min_args, std::uint32_t max_args, std::string doc);
 
 /// The row as a state, a readout, a live one, one of three axes with an own axis.
@@ -146,6 +149,10 @@ struct Bind<Member> {
 template <class T, void (T::*Member)(const double*)>
 struct Bind<Member> {
   static void write(void* thing, const double* in) { (static_cast<T*>(thing)->*Member)(in); }
+};
+template <class T, std::string_view (T::*Member)() const>
+struct Bind<Member> {
+  static std::string_view say(const void* thing) { return (static_cast<const T*>(thing)->*Member)(); }
 };
 template <class T, Result<void> (T::*Member)(const double*) const>
 struct Bind<Member> {
@@ -172,6 +179,11 @@ Row view(Row row) {
 template <auto Read>
 Row view(Row row) {
   row.read = &Bind<Read>::read;
+  return row;
+}
+template <auto Member>
+Row say(Row row) {
+  row.say = &Bind<Member>::say;
   return row;
 }
 template <auto Member>

@@ -35,6 +35,7 @@ constexpr std::array kUnits = {
     Unit{"1/s²", "per second squared"},
     Unit{"kg·m²", "kilogram metre squared"},
     Unit{"× real time", "simulated seconds per real second"},
+    Unit{"hsb", "hue, saturation, brightness"},
 };
 }  // namespace
 

@@ -1,6 +1,7 @@
 // Behind the door: OSC patterns, messages on their way out, ports that a scene declares.
 #include <fmt/format.h>
 
+#include "base/address.h"
 #include "base/text.h"
 #include "script/context.h"
 
@@ -10,28 +11,6 @@ namespace {
 
 constexpr std::size_t kMostHeld = 10000;  // messages of one call
 constexpr std::size_t kMostHeldText = std::size_t{1} << 20u;
-
-// address against pattern, name by name; an empty name in the pattern (`//`) stands for any depth
-bool pieces_match(std::span<const std::string_view> pattern, std::span<const std::string_view> address, int& budget) {
-  if (--budget < 0) return false;
-  if (pattern.empty()) return address.empty();
-  if (pattern.front().empty()) {
-    for (std::size_t skip = 0; skip <= address.size(); skip++) {
-      if (pieces_match(pattern.subspan(1), address.subspan(skip), budget)) return true;
-    }
-    return false;
-  }
-  return !address.empty() && pattern_match(pattern.front(), address.front()) &&
-         pieces_match(pattern.subspan(1), address.subspan(1), budget);
-}
-
-bool address_matches(std::string_view pattern, std::string_view address) {
-  if (pattern.empty() || address.empty()) return false;
-  const auto pattern_pieces = split(pattern.substr(1), '/');
-  const auto address_pieces = split(address.substr(1), '/');
-  int budget = 2000;
-  return pieces_match(pattern_pieces, address_pieces, budget);
-}
 
 // "127.0.0.1:9000" as an IPv4 address in host order and a port
 struct HostPort {

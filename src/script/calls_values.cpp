@@ -64,8 +64,8 @@ const LimberView* view(void* c) { return reinterpret_cast<const LimberView*>(&co
 const LimberAnswer* answer(void* c) { return &context_of(c).answer; }
 
 std::int32_t class_table(void* c, std::int32_t which) {
-  const Table* const tables[] = {&World::table(), &Body::table(),  &Part::table(),
-                                 &Joint::table(), &Motor::table(), &Shape::table()};
+  const Table* const tables[] = {&World::table(), &Body::table(),  &Part::table(),    &Joint::table(),
+                                 &Motor::table(), &Shape::table(), &Visuals::table(), &Camera::table()};
   return static_cast<std::int32_t>(context_of(c).world->store().table_number(*tables[which]));
 }
 

@@ -126,11 +126,16 @@ void Vm::load_prelude(ScriptContext& context) {
   lua_setfield(L, -2, "api");
   lua_pushlightuserdata(L, &context);
   lua_setfield(L, -2, "context");
-  const NodeId world = context.world->id();
-  lua_pushnumber(L, world.slot);
-  lua_setfield(L, -2, "world_slot");
-  lua_pushnumber(L, world.generation);
-  lua_setfield(L, -2, "world_generation");
+  const auto only = [&](const std::string& name, NodeId id) {
+    lua_pushnumber(L, id.slot);
+    lua_setfield(L, -2, (name + "_slot").c_str());
+    lua_pushnumber(L, id.generation);
+    lua_setfield(L, -2, (name + "_generation").c_str());
+  };
+  const Visuals& visuals = context.world->visuals();
+  only("world", context.world->id());
+  only("visuals", visuals.id());
+  only("camera", visuals.camera().id());
   const auto guard_function = [&](const char* name, lua_CFunction function) {
     lua_pushlightuserdata(L, &guard_);
     lua_pushcclosure(L, function, 1);

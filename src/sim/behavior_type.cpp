@@ -32,6 +32,12 @@ std::vector<Row> with_common(std::vector<Row> common, const std::vector<Row>& pa
   return common;
 }
 
+Row error_row() {
+  Row row = text("error", "Why it rests although it is active; empty: it does not.");
+  row.say = [](const void* thing) -> std::string_view { return static_cast<const Behavior*>(thing)->error(); };
+  return row;
+}
+
 }  // namespace
 
 std::string plain_type_name(std::string_view name) {
@@ -44,8 +50,9 @@ std::string plain_type_name(std::string_view name) {
 BehaviorType BehaviorType::of(std::string name, std::string doc, BehaviorTargets targets, bool is_group,
                               std::vector<Row> parameters, std::function<std::unique_ptr<Behavior>()> make) {
   BehaviorType type;
-  type.table = &shared_table("behavior", fmt::format("/physics/body/<body>/behavior/<{}>", name),
-                             with_common(Behavior::common_rows(), parameters));
+  std::vector<Row> rows = with_common(Behavior::common_rows(), parameters);
+  rows.push_back(error_row());  // last: it has no number, and so no place in a scene's said rows
+  type.table = &shared_table("behavior", fmt::format("/physics/body/<body>/behavior/<{}>", name), std::move(rows));
   if (is_group) {
     for (Row& row : parameters) row.written = &BehaviorGroup::hand_on;
     type.group_table = &shared_table("group", fmt::format("/physics/group/<{}>", name),

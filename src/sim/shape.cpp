@@ -5,13 +5,24 @@
 
 #include <fmt/format.h>
 
+#include "base/color.h"
 #include "sim/geometry.h"
 
 namespace limber {
 
 const Table& Shape::table() {
-  // materials come with the picture; until then a shape is a name that parts are made of
-  static const Table table("shape", "/visuals/shape/<shape>", "", {});
+  using namespace rows;
+  static const Table table(
+      "shape", "/visuals/shape/<shape>", "/visuals/shape",
+      {
+          number("transparency", "", 0, 0, 1, "0: nothing shines through; 1: not to be seen."),
+          number("ambient_scale", "", 0.5, 0, 10, "How much light from everywhere counts."),
+          number("diffuse_scale", "", 0.5, 0, 10, "How much the lamps' light counts."),
+          number("specular_scale", "", 0.5, 0, 10, "How bright highlights are."),
+          number("specular_pow", "", 10, 0, 1000, "How small highlights are."),
+          vec3("ambient_color", "hsb", {0, 0, 1}, 0, 1, "In light from everywhere: hue, saturation, brightness."),
+          vec3("diffuse_color", "hsb", {0, 0, 1}, 0, 1, "In the lamps' light: hue, saturation, brightness."),
+      });
   return table;
 }
 
@@ -95,6 +106,16 @@ void Shape::become(const Shape& other) {
   model_ = other.model_;
   children_ = other.children_;
   geometry_ = other.geometry_;
+}
+
+void Shape::paint(const PlacedShape& visual) {
+  if (!visual.color) return;
+  const Vec3 hsb = hsb_of(*visual.color);
+  for (const char* const row : {"ambient_color", "diffuse_color"}) {
+    double* const out = store_.tell(id_, table().at(row));
+    for (int i = 0; i < 3; i++) out[i] = std::clamp(hsb[i], 0.0, 1.0);
+  }
+  store_.tell(id_, table().at("transparency"))[0] = std::clamp(1 - visual.alpha, 0.0, 1.0);
 }
 
 std::shared_ptr<const Geometry> Shape::geometry() const {

@@ -35,6 +35,8 @@ class Shape {
   const std::vector<PlacedShape>& children() const { return children_; }
   /// Takes the geometry of another shape, of another world perhaps. Parts made before are not changed.
   void become(const Shape& other);
+  /// Takes the colour that a file gives a visual, if it gives one; nothing counts as said by that.
+  void paint(const PlacedShape& visual);
   /// As a part of that shape collides, mass spread over its volume. Built at first use.
   std::shared_ptr<const Geometry> geometry() const;
 

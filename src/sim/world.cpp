@@ -62,8 +62,8 @@ World::World(Store& store, const WorldSetup& setup) : store_(store), bullet_(std
   id_ = store_.add(table(), physics, "sim", this);
   body_group_ = store_.add_group(physics, "body");
   behaviors_ = std::make_unique<BehaviorList>(*this, physics);
-  const NodeId visuals = store_.add_group(store_.root(), "visuals");
-  shape_group_ = store_.add_group(visuals, "shape");
+  visuals_ = std::make_unique<Visuals>(store_);
+  shape_group_ = store_.add_group(visuals_->id(), "shape");
   bullet_->setInternalTickCallback(&World::after_internal_step, this, false);
 }
 
@@ -77,6 +77,7 @@ void World::clear() {
   for (const Row& row : table().rows()) {
     if (row.kind == RowKind::property) (void)store_.set(id_, row, {row.initial.data(), row.width});
   }
+  visuals_->clear();
 }
 
 void World::restart_time(std::uint64_t tick, double time) {
@@ -101,13 +102,17 @@ Result<Body*> World::add_body(std::string name) {
 Result<Body*> World::add_body(const std::shared_ptr<const BodyModel>& model, std::string name,
                               const BuildOptions& options) {
   Result<Body*> body = add_body(std::move(name));
-  if (body) (*body)->build(model, options);
+  if (!body) return body;
+  add_shapes_of(*model);
+  (*body)->build(model, options);
   return body;
 }
 
 Result<Body*> World::copy_body(const Body& source, std::string name) {
   Result<Body*> body = add_body(std::move(name));
-  if (body) (*body)->build_copy(source);
+  if (!body) return body;
+  if (source.model() != nullptr && &source.world() != this) add_shapes_of(*source.model());
+  (*body)->build_copy(source);
   return body;
 }
 
@@ -274,8 +279,12 @@ void World::settle_healed() {
 
 std::uint64_t World::state_hash() const {
   std::uint64_t hash = hash_bytes("limber");
-  const auto* kept = reinterpret_cast<const char*>(std::as_const(store_).kept_block(id_));
-  hash = hash_bytes({kept, table().kept_width() * sizeof(double)}, hash);
+  const auto add_kept = [&](NodeId id) {
+    const auto* kept = reinterpret_cast<const char*>(std::as_const(store_).kept_block(id));
+    hash = hash_bytes({kept, store_.table(id).kept_width() * sizeof(double)}, hash);
+  };
+  for (const NodeId id : {id_, visuals_->id(), visuals_->camera().id()}) add_kept(id);
+  for (const auto& shape : shapes_) add_kept(shape->id());
   const double moment[] = {time(), static_cast<double>(tick_), static_cast<double>(seed())};
   hash = hash_bytes({reinterpret_cast<const char*>(moment), sizeof moment}, hash);
   for (const auto& body : bodies_) hash = body->state_hash(hash);

@@ -15,6 +15,7 @@
 #include "sim/contacts.h"
 #include "sim/island_world.h"
 #include "sim/shape.h"
+#include "sim/visuals.h"
 #include "sim/world_undo.h"
 
 namespace limber {
@@ -58,12 +59,17 @@ class World {
   Shape* find_shape(std::string_view name) const;
   std::span<const std::unique_ptr<Shape>> shapes() const { return shapes_; }
 
+  /// A shape for each of the model's visuals, with its colour: `<robot>.<link>`, a link's second `<robot>.<link>.2`,
+  /// and so on. Those that are there already are left as they are: all bodies of the model share them.
+  void add_shapes_of(const BodyModel& model);
   void remove_shape(Shape& shape);
   /// The shape of that name as one of another world.
   NodeId same_shape(const World& other, NodeId shape) const;
   /// Brings bodies, shapes into this order; those that are not named stand behind, as they stood.
   void order_bodies(const std::vector<Body*>& first);
   void order_shapes(const std::vector<Shape*>& first);
+  Visuals& visuals() { return *visuals_; }
+  const Visuals& visuals() const { return *visuals_; }
   BehaviorList& behaviors() { return *behaviors_; }
   const BehaviorList& behaviors() const { return *behaviors_; }
 
@@ -122,6 +128,7 @@ class World {
   std::vector<std::unique_ptr<Shape>> shapes_;
   std::vector<std::unique_ptr<Body>> bodies_;
   std::unique_ptr<BehaviorList> behaviors_;
+  std::unique_ptr<Visuals> visuals_;
   struct ModelGeometry {
     std::shared_ptr<const BodyModel> model;  // keeps the key's address from being used again
     std::vector<std::shared_ptr<const Geometry>> links;

@@ -1,6 +1,8 @@
 // World: what a reload changes in it: shapes that go, bodies that are built anew, the order of both.
 #include <algorithm>
 
+#include <fmt/format.h>
+
 #include "base/check.h"
 #include "sim/posture.h"
 #include "sim/world.h"
@@ -45,6 +47,18 @@ Body& World::rebuild_body(Body& body, const Body& described, const std::vector<b
   fresh.fresh_ = false;
   posture.give_to(fresh, joints_start_anew);
   return fresh;
+}
+
+void World::add_shapes_of(const BodyModel& model) {
+  for (const LinkModel& link : model.links) {
+    for (std::size_t i = 0; i < link.visuals.size(); i++) {
+      const PlacedShape& visual = link.visuals[i];
+      std::string name = fmt::format("{}.{}", model.name, link.name);
+      if (i > 0) name += fmt::format(".{}", i + 1);
+      if (find_shape(name) != nullptr) continue;
+      if (const Result<Shape*> shape = add_shape(std::move(name), visual.shape)) (*shape)->paint(visual);
+    }
+  }
 }
 
 void World::remove_shape(Shape& shape) {

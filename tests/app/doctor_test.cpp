@@ -11,12 +11,13 @@ namespace {
 // takes the default port unless somebody on this machine has it already; either way it is taken
 class TakenPort {
  public:
-  TakenPort() : fd_(socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0)) {
+  explicit TakenPort(int kind) : fd_(socket(AF_INET, kind | SOCK_CLOEXEC, 0)) {
     sockaddr_in at{};
     at.sin_family = AF_INET;
     at.sin_port = htons(9003);
     at.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
     (void)bind(fd_, reinterpret_cast<const sockaddr*>(&at), sizeof at);
+    if (kind == SOCK_STREAM) (void)listen(fd_, 1);
   }
   ~TakenPort() { close(fd_); }
   TakenPort(const TakenPort&) = delete;
@@ -37,11 +38,13 @@ TEST(Doctor, SaysWhatIsThere) {
 }
 
 TEST(Doctor, ATakenPortIsTheMachinesFault) {
-  const TakenPort taken;
-  const Ran ran = run({"doctor"});
-  EXPECT_EQ(ran.code, 3);
-  EXPECT_NE(ran.out.find("no   ports"), std::string::npos) << ran.out;
-  EXPECT_NE(ran.out.find("--osc-in"), std::string::npos) << "the cure: " << ran.out;
+  for (const auto& [kind, cure] : {std::pair(SOCK_DGRAM, "--osc-in"), std::pair(SOCK_STREAM, "--query")}) {
+    const TakenPort taken(kind);
+    const Ran ran = run({"doctor"});
+    EXPECT_EQ(ran.code, 3);
+    EXPECT_NE(ran.out.find("no   ports"), std::string::npos) << ran.out;
+    EXPECT_NE(ran.out.find(cure), std::string::npos) << "the cure: " << ran.out;
+  }
 }
 
 }  // namespace

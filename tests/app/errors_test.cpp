@@ -53,16 +53,17 @@ std::vector<Refusal> refusals() {
   return list;
 }
 
-// a UDP port of this machine that somebody holds
+// a port of this machine, of UDP or TCP, that somebody holds
 class TakenPort {
  public:
-  TakenPort() : fd_(socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0)) {
+  explicit TakenPort(int kind) : fd_(socket(AF_INET, kind | SOCK_CLOEXEC, 0)) {
     sockaddr_in at{};
     at.sin_family = AF_INET;
     at.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
     socklen_t size = sizeof at;
     if (bind(fd_, reinterpret_cast<const sockaddr*>(&at), size) == 0)
       getsockname(fd_, reinterpret_cast<sockaddr*>(&at), &size);
+    if (kind == SOCK_STREAM) listen(fd_, 1);
     number_ = ntohs(at.sin_port);
   }
   ~TakenPort() { close(fd_); }
@@ -138,7 +139,8 @@ Ran run_input(const std::string& input) {
 TEST(Errors, EachRefusalIsAsTheTableSays) {
   const Folder folder;
   write_inputs(folder);
-  const TakenPort taken;
+  const TakenPort taken(SOCK_DGRAM);
+  const TakenPort taken_tcp(SOCK_STREAM);
   const std::vector<Refusal> list = refusals();
   EXPECT_GT(list.size(), 20U);
   for (const Refusal& r : list) {
@@ -147,6 +149,7 @@ TEST(Errors, EachRefusalIsAsTheTableSays) {
     for (std::string* s : {&input, &text}) {
       replace_all(*s, "<dir>", folder.path());
       replace_all(*s, "<port>", taken.number());
+      replace_all(*s, "<tcp>", taken_tcp.number());
       replace_all(*s, "<source>", LIMBER_SOURCE_DIR);
     }
     const Ran ran = run_input(input);
@@ -196,7 +199,8 @@ TEST(Errors, NoRefusalIsMissingInTheTable) {
     // what these write is their answer, what they refuse with comes from others; a console needs a program that runs
     // (console_test.cpp)
     const std::string name = entry.path().stem().string();
-    if (name == "console" || name == "describe" || name == "doctor" || name == "inspect" || name.starts_with("bench_"))
+    if (name == "console" || name.starts_with("describe") || name == "doctor" || name == "inspect" ||
+        name.starts_with("bench_"))
       continue;
     for (const std::string& text : refusal_texts(read_file(entry.path()))) {
       found++;

@@ -22,8 +22,9 @@ TEST(Options, EachCommandHasHelp) {
     EXPECT_NE(ran.out.find("--help"), std::string::npos) << command;
   }
   const std::string play = run({"play", "--help"}).out;
-  for (const char* option : {"--headless", "--fast", "--duration", "--ticks", "--seed", "--set", "--osc-in",
-                             "--osc-allow", "--osc-out", "--osc-optional", "--package-path", "--strict", "--hash"}) {
+  for (const char* option :
+       {"--headless", "--fast", "--duration", "--ticks", "--seed", "--set", "--osc-in", "--osc-allow", "--osc-out",
+        "--query", "--osc-optional", "--package-path", "--strict", "--hash"}) {
     EXPECT_NE(play.find(option), std::string::npos) << option;
   }
 }

@@ -56,7 +56,7 @@ TEST(Play, CtrlCEndsCleanly) {
   const Folder folder;
   const std::string scene = folder.file("s.lua", kBall);
   for (const int signal : {SIGINT, SIGTERM, SIGHUP}) {
-    Running running(limber({scene, "--osc-in", "off", "--osc-out", "off", "--hash"}));
+    Running running(limber({scene, "--osc-in", "off", "--osc-out", "off", "--query", "off", "--hash"}));
     ASSERT_TRUE(running.wait_for("playing headless"));
     running.signal(signal);
     const Ran ran = running.finish();
@@ -87,7 +87,7 @@ TEST(Play, FastOpensNoPortsUnlessAsked) {
   const Folder folder;
   const std::string scene = folder.file("s.lua", kBall);
   const Ran quiet = run({scene, "--fast", "--ticks", "1"});
-  EXPECT_NE(quiet.err.find("OSC in off\nlimber: OSC out off\n"), std::string::npos) << quiet.err;
+  EXPECT_NE(quiet.err.find("OSC in off\nlimber: OSC out off\nlimber: OSCQuery off\n"), std::string::npos) << quiet.err;
   const Ran asked = run({scene, "--fast", "--ticks", "1", "--osc-in", "127.0.0.1:0", "--osc-out", "127.0.0.1:9"});
   EXPECT_NE(asked.err.find("OSC in 127.0.0.1:"), std::string::npos) << asked.err;
   EXPECT_NE(asked.err.find("OSC out 127.0.0.1:9 (pos+rot+relrot at 60 Hz)"), std::string::npos) << asked.err;

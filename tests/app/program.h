@@ -77,6 +77,14 @@ class Running {
     return true;
   }
 
+  /// Reads what has come so far, without waiting.
+  void look() {
+    while (true) {
+      pollfd polled[2] = {{pipes_[0], POLLIN, 0}, {pipes_[1], POLLIN, 0}};
+      if (poll(polled, 2, 0) <= 0 || !read_some()) return;
+    }
+  }
+
   /// Reads to the end and gives what it was.
   Ran finish() {
     while (read_some()) {

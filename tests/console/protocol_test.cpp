@@ -23,8 +23,8 @@ ConsoleLine read(const std::string& line) {
 }
 
 TEST(Protocol, LinesAreAsTheyAreDocumented) {
-  EXPECT_EQ(request_line({7, false, "sim.time"}), "{\"evaluate\":\"sim.time\",\"id\":7}\n");
-  EXPECT_EQ(request_line({8, true, "sim.ti"}), "{\"complete\":\"sim.ti\",\"id\":8}\n");
+  EXPECT_EQ(request_line({7, ConsoleRequest::Wish::evaluate, "sim.time"}), "{\"evaluate\":\"sim.time\",\"id\":7}\n");
+  EXPECT_EQ(request_line({8, ConsoleRequest::Wish::complete, "sim.ti"}), "{\"complete\":\"sim.ti\",\"id\":8}\n");
   EXPECT_EQ(hello_line("0.1.0", 42, "scripts/arms.lua"),
             "{\"limber\":\"0.1.0\",\"pid\":42,\"scene\":\"scripts/arms.lua\"}\n");
   EXPECT_EQ(answer_line(7, {Evaluation::Kind::value, "1.5"}), "{\"id\":7,\"value\":\"1.5\"}\n");
@@ -40,12 +40,31 @@ TEST(Protocol, LinesAreAsTheyAreDocumented) {
   EXPECT_EQ(refused_line("full"), "{\"refused\":\"full\"}\n");
 }
 
+TEST(Protocol, Watching) {
+  using Wish = ConsoleRequest::Wish;
+  EXPECT_EQ(request_line({3, Wish::traffic, "/a"}), "{\"id\":3,\"of\":\"/a\",\"watch\":\"traffic\"}\n");
+  const Result<ConsoleRequest> changes = parse_request(cut(request_line({4, Wish::changes, ""})));
+  ASSERT_TRUE(changes.ok());
+  EXPECT_EQ(changes->wish, Wish::changes);
+  EXPECT_EQ(changes->id, 4U);
+  EXPECT_EQ(parse_request("{\"watch\":\"birds\"}").error(), "\"watch\" is \"traffic\" or \"changes\"");
+  const ConsoleLine in = read(traffic_line(true, 1.5, "127.0.0.1:5", "/a 1"));
+  EXPECT_EQ(in.kind, Kind::in);
+  EXPECT_EQ(in.text + "|" + in.end, "/a 1|127.0.0.1:5");
+  EXPECT_EQ(in.time, 1.5);
+  EXPECT_EQ(read(traffic_line(false, 0, "x", "/a")).kind, Kind::out);
+  const ConsoleLine change = read(change_line(2, "/scene/wind 4"));
+  EXPECT_EQ(change.kind, Kind::change);
+  EXPECT_EQ(change.text, "/scene/wind 4");
+}
+
 TEST(Protocol, WhatOneEndWritesTheOtherReads) {
   const std::string odd = "a\"b\\c\n\td 'é' \xe2\x80\xa6 \x01";
-  const Result<ConsoleRequest> request = parse_request(cut(request_line({9007199254740993u, true, odd})));
+  const Result<ConsoleRequest> request =
+      parse_request(cut(request_line({9007199254740993u, ConsoleRequest::Wish::complete, odd})));
   ASSERT_TRUE(request.ok());
   EXPECT_EQ(request->id, 9007199254740993u);
-  EXPECT_TRUE(request->complete);
+  EXPECT_EQ(request->wish, ConsoleRequest::Wish::complete);
   EXPECT_EQ(request->text, odd);
   const ConsoleLine hello = read(hello_line("0.1.0", 42, "a scene"));
   EXPECT_EQ(hello.kind, Kind::hello);
@@ -94,8 +113,8 @@ TEST(Protocol, WrongRequestsSayWhatIsRight) {
 
 TEST(Protocol, GarbageIsReadWithoutHarm) {
   Random random(7, "protocol");
-  const std::string good =
-      request_line({1, false, "print('x')"}) + answer_line(2, {Evaluation::Kind::names, "a\nb", 1});
+  const std::string good = request_line({1, ConsoleRequest::Wish::evaluate, "print('x')"}) +
+                           answer_line(2, {Evaluation::Kind::names, "a\nb", 1});
   std::size_t refused = 0;
   for (int i = 0; i < 20000; i++) {
     std::string line = i % 2 == 0 ? good.substr(0, 1 + static_cast<std::size_t>(random.uniform() * 70)) : "";

@@ -73,7 +73,7 @@ struct ServerTest : testing::Test {
     return end;
   }
   std::string evaluate(ConsoleLink& link, const std::string& text) {
-    EXPECT_TRUE(link.send({++id, false, text}));
+    EXPECT_TRUE(link.send({++id, ConsoleRequest::Wish::evaluate, text}));
     const ConsoleLine line = next(link);
     EXPECT_EQ(line.id, id);
     return line.text;
@@ -98,9 +98,9 @@ TEST_F(ServerTest, GreetsAndAnswers) {
   EXPECT_EQ(evaluate(link, "ball.position = vec3(0, 0, 9)"), "");
   EXPECT_NEAR(show.read("/physics/body/ball/part/ball/position", 2), 9, 0.2);
   EXPECT_TRUE(evaluate(link, "nothing").starts_with("console:1: there is no global 'nothing'"));
-  EXPECT_TRUE(link.send({50, false, "for"}));
+  EXPECT_TRUE(link.send({50, ConsoleRequest::Wish::evaluate, "for"}));
   EXPECT_EQ(next(link).kind, Kind::incomplete);
-  EXPECT_TRUE(link.send({51, true, "sim.ti"}));
+  EXPECT_TRUE(link.send({51, ConsoleRequest::Wish::complete, "sim.ti"}));
   const ConsoleLine names = next(link);
   EXPECT_EQ(names.names, (std::vector<std::string>{"tick", "time", "timestep"}));
   EXPECT_EQ(names.word, 2U);
@@ -138,7 +138,7 @@ TEST_F(ServerTest, AnotherUserIsTurnedAway) {
   Result<Descriptor> connection = connect_console(others.path());
   ASSERT_TRUE(connection.ok());
   ConsoleLink link(std::move(*connection));
-  link.send({1, false, "ball:remove()"});
+  link.send({1, ConsoleRequest::Wish::evaluate, "ball:remove()"});
   EXPECT_EQ(next(link).text, "ended") << "not even a greeting";
   show.ticks(3);
   EXPECT_EQ(show.read("/physics/body/ball/enabled"), 1);
@@ -149,7 +149,7 @@ TEST_F(ServerTest, WhatARequestPrintedComesBeforeItsAnswer) {
   start();
   ConsoleLink link = enter();
   ConsoleLink other = enter();
-  EXPECT_TRUE(link.send({7, false, "print('a', 1) warn('b') return 3"}));
+  EXPECT_TRUE(link.send({7, ConsoleRequest::Wish::evaluate, "print('a', 1) warn('b') return 3"}));
   ConsoleLine line = next(link);
   EXPECT_EQ(line.kind, Kind::print);
   EXPECT_EQ(line.text, "a\t1");
@@ -249,7 +249,7 @@ TEST_F(ServerTest, OneThatDoesNotReadWaitsAlone) {
   std::uint64_t asked = 0;
   std::string rest;
   for (int quiet = 0; quiet < 200;) {
-    if (rest.empty()) rest = request_line({++asked, false, "('x'):rep(60000)"});
+    if (rest.empty()) rest = request_line({++asked, ConsoleRequest::Wish::evaluate, "('x'):rep(60000)"});
     const ssize_t n = send(slow.fd(), rest.data(), rest.size(), MSG_NOSIGNAL | MSG_DONTWAIT);
     if (n > 0) rest.erase(0, static_cast<std::size_t>(n));
     quiet = n > 0 ? 0 : quiet + 1;
@@ -270,7 +270,7 @@ TEST_F(ServerTest, ThoseWhoLeaveInTheMiddleAreForgotten) {
   start();
   for (int i = 0; i < 300; i++) {
     ConsoleLink link = connect();
-    if (i % 2 == 0) link.send({1, false, "state.left = (state.left or 0) + 1"});
+    if (i % 2 == 0) link.send({1, ConsoleRequest::Wish::evaluate, "state.left = (state.left or 0) + 1"});
     if (i % 3 == 0) show.ticks(1);
   }
   for (int i = 0; i < kPatience; i++) {
@@ -303,7 +303,7 @@ TEST_F(ServerTest, NothingThatComesInChangesTheRun) {
   start();
   Random random(11, "console");
   std::vector<ConsoleLink> links;
-  const std::string good = request_line({1, false, "state.hash = nil"});
+  const std::string good = request_line({1, ConsoleRequest::Wish::evaluate, "state.hash = nil"});
   while (show.engine.world().tick() < 400) {
     if (links.size() < 4) links.push_back(connect());
     ConsoleLink& link = links[static_cast<std::size_t>(random.uniform() * static_cast<double>(links.size()))];

@@ -5,6 +5,7 @@
 
 #include "base/text.h"
 #include "engine/rig.h"
+#include "engine/seed_table.h"
 
 namespace limber::engine_test {
 namespace {
@@ -12,59 +13,10 @@ namespace {
 using Values = std::vector<double>;
 using Kind = Outcome::Kind;
 
-struct Address {
-  const char* of;     // class
-  const char* seed;   // as the seed's documentation writes it
-  const char* row;    // as the table has it
-  std::size_t width;  // numbers
-  bool flags = false;
-};
-
-// the reference's table of the seed's physics addresses, but: joint/basis, prevpos, nextpos (refused), part/force (an
-// action), sim/* (no names), behavior/parameter (behaviours do not exist yet); those have tests of their own below
-constexpr Address kByName[] = {
-    {"part", "mass", "mass", 1},
-    {"part", "lineardamping", "linear_damping", 1},
-    {"part", "angulardamping", "angular_damping", 1},
-    {"part", "friction", "friction", 1},
-    {"part", "rollingfriction", "rolling_friction", 1},
-    {"part", "restitution", "restitution", 1},
-    {"joint", "linearstoperp", "linear_stop_erp", 3},
-    {"joint", "angularstoperp", "angular_stop_erp", 3},
-    {"joint", "linearstopcfm", "linear_stop_cfm", 3},
-    {"joint", "angularstopcfm", "angular_stop_cfm", 3},
-    {"joint", "linearlowerlimit", "linear_lower_limit", 3},
-    {"joint", "linearupperlimit", "linear_upper_limit", 3},
-    {"joint", "angularlowerlimit", "angular_lower_limit", 3},
-    {"joint", "angularupperlimit", "angular_upper_limit", 3},
-    {"motor", "bounce", "bounce", 1},
-    {"motor", "damping", "damping", 1},
-    {"motor", "linearactive", "linear_active", 3, true},
-    {"motor", "angularactive", "angular_active", 3, true},
-    {"motor", "maxlinearforce", "max_linear_force", 3},
-    {"motor", "maxangularforce", "max_angular_force", 3},
-    {"motor", "linearvelocity", "linear_velocity", 3},
-    {"motor", "angularvelocity", "angular_velocity", 3},
-    {"motor", "linearservoactive", "linear_servo_active", 3, true},
-    {"motor", "angularservoactive", "angular_servo_active", 3, true},
-    {"motor", "linearservoposition", "linear_servo_position", 3},
-    {"motor", "angularservoposition", "angular_servo_position", 3},
-    {"motor", "linearspringactive", "linear_spring_active", 3, true},
-    {"motor", "angularspringactive", "angular_spring_active", 3, true},
-    {"motor", "linearspringrestlength", "linear_spring_rest_length", 3},
-    {"motor", "linearspringstiffness", "linear_spring_stiffness", 3},
-    {"motor", "linearspringdamping", "linear_spring_damping", 3},
-    {"motor", "angularspringrestlength", "angular_spring_rest_length", 3},
-    {"motor", "angularspringstiffness", "angular_spring_stiffness", 3},
-    {"motor", "angularspringdamping", "angular_spring_damping", 3},
-};
-
 Values value_of(const Address& a) {
   if (a.flags) return {1, 0, 1};
   return a.width == 1 ? Values{0.25} : Values{0.25, 0.5, 0.75};
 }
-
-std::string seed_address(const Address& a) { return fmt::format("/physics/{}/{}", a.of, a.seed); }
 
 const std::map<std::string, std::vector<std::pair<std::string, std::string>>> kElements = {
     {"part",

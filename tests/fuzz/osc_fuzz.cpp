@@ -18,6 +18,7 @@
 #include "engine/everything.h"
 #include "osc/encode.h"
 #include "osc/receiver.h"
+#include "osc/subscribers.h"
 #include "osc/validate.h"
 
 namespace {
@@ -127,6 +128,7 @@ class Desk {
       say({"/physics/sim/solver_iterations", {Arg::of(10.0)}});
       say({"/transport/step", {}});
     }
+    subscribers_.work();
     count_waiting();
     const std::uint64_t tick = engine_.world().tick();
     engine_.tick();
@@ -176,7 +178,7 @@ class Desk {
     }
     const Counters& counters = link_.counters;
     // every message came to one end, and each refusal was told to its sender
-    const std::uint64_t ended = executed_ + pongs_ + refused_here_ + counters.dropped;
+    const std::uint64_t ended = executed_ + pongs_ + subscribed_ + refused_here_ + counters.dropped;
     require(nothing_is_held ? counters.received == ended : counters.received >= ended);
     require(link_.outbox.dropped() > 0 || counters.refused + counters.unknown == errors_);
   }
@@ -192,8 +194,15 @@ class Desk {
                         errors_++;
                         check_packet(out.message);
                       },
-                      [this](const Origin&) { pongs_++; }},
+                      [this](const Origin&) { pongs_++; },
+                      [this](const Message& message, const Origin& origin) {
+                        const Result<void> done = subscribers_.take(message, origin);
+                        subscribed_ += done ? 1 : 0;
+                        return done;
+                      },
+                      [this](const Origin& origin) { return subscribers_.follows(origin); }},
                      clock_};
+  Subscribers subscribers_{link_, clock_, [this](const Outgoing& out) { check_packet(out.message); }};
   PacketBuffer buffer_;
   std::vector<Command> commands_;
   std::vector<Outgoing> outgoing_;
@@ -201,6 +210,7 @@ class Desk {
   std::uint64_t inputs_ = 0;
   std::uint64_t executed_ = 0;
   std::uint64_t pongs_ = 0;
+  std::uint64_t subscribed_ = 0;
   std::uint64_t refused_here_ = 0;
   std::uint64_t errors_ = 0;
 };

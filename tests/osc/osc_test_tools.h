@@ -5,7 +5,6 @@
 #include <poll.h>
 #include <sys/socket.h>
 
-#include <bit>
 #include <chrono>
 #include <condition_variable>
 #include <cstdint>
@@ -16,6 +15,7 @@
 #include <vector>
 
 #include "engine/link.h"
+#include "osc/bytes.h"
 #include "osc/clock.h"
 #include "osc/socket.h"
 
@@ -23,44 +23,6 @@ namespace limber::osc_test {
 
 /// Nothing waits longer than this; only a failing test waits as long.
 inline constexpr int kPatienceMs = 20000;
-
-/// OSC's bytes as its specification has them, written without the code that is tested.
-class Bytes {
- public:
-  Bytes& text(std::string_view s) {
-    bytes_ += s;
-    do bytes_ += '\0';
-    while (bytes_.size() % 4 != 0);
-    return *this;
-  }
-  Bytes& u32(std::uint32_t v) {
-    for (int shift = 24; shift >= 0; shift -= 8) bytes_ += static_cast<char>(v >> shift & 255u);
-    return *this;
-  }
-  Bytes& u64(std::uint64_t v) {
-    return u32(static_cast<std::uint32_t>(v >> 32)).u32(static_cast<std::uint32_t>(v & 0xffffffffu));
-  }
-  Bytes& f(float v) { return u32(std::bit_cast<std::uint32_t>(v)); }
-  Bytes& d(double v) { return u64(std::bit_cast<std::uint64_t>(v)); }
-  Bytes& raw(std::string_view s) {
-    bytes_ += s;
-    return *this;
-  }
-  const std::string& str() const { return bytes_; }
-
- private:
-  std::string bytes_;
-};
-
-inline std::string bundle(std::uint64_t time_tag, const std::vector<std::string>& elements) {
-  Bytes b;
-  b.text("#bundle").u64(time_tag);
-  for (const std::string& e : elements) b.u32(static_cast<std::uint32_t>(e.size())).raw(e);
-  return b.str();
-}
-
-/// `/n ,i number`
-inline std::string numbered(std::uint32_t number) { return Bytes().text("/n").text(",i").u32(number).str(); }
 
 /// A clock that stands still until it is turned.
 struct HandClock {

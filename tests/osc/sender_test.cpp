@@ -35,8 +35,9 @@ struct Desk {
   HandClock hand;
   NetClock clock = hand.clock();
   Counters counters;
+  Traffic traffic;
   int reply_fd = -1;
-  Sender sender{counters, [this](const Endpoint&) { return reply_fd; }, clock};
+  Sender sender{counters, traffic, [this](const Endpoint&) { return reply_fd; }, clock};
 };
 
 TEST(Sender, AnswersGoToTheAsker) {

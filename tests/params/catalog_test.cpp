@@ -1,6 +1,7 @@
 // The catalog: addresses to places by exact path and by pattern.
 #include "params/catalog.h"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include "params/toy.h"
@@ -24,7 +25,8 @@ struct Catalog : testing::Test {
     return store.path(place->node) + (place->row != nullptr ? " " + place->row->name : "");
   }
   std::vector<std::string> matched(std::string_view pattern, std::size_t limit = 1000000) {
-    const Result<std::vector<Place>> places = match_places(store, pattern, limit);
+    PatternBudget budget;
+    const Result<std::vector<Place>> places = match_places(store, pattern, budget, limit);
     if (!places) return {places.error()};
     std::vector<std::string> out;
     for (const Place& p : *places) out.push_back(store.path(p.node) + (p.row != nullptr ? " " + p.row->name : ""));
@@ -111,6 +113,29 @@ TEST_F(Catalog, APatternsCostIsBounded) {
   for (int i = 0; i < 20; i++) pattern += "//*";
   EXPECT_EQ(matched(pattern + "/nothing"), Paths{});
   EXPECT_EQ(matched("/toys/bear//mass").size(), 3u);
+}
+
+TEST_F(Catalog, APatternThatIsTooMuchWorkIsRefusedWhole) {
+  for (int i = 0; i < 200; i++) store.add(Toy::table(), toys, fmt::format("aaaaaaaaaaaaaaaaaaaaaaaa{}", i), &toy);
+  // the stars alone need more steps for one name than this budget has for all
+  const std::string evil = "/toys/*a*a*a*a*a*a*a*b/mass";
+  PatternBudget small{20000};
+  const Result<std::vector<Place>> places = match_places(store, evil, small);
+  ASSERT_FALSE(places.ok());
+  EXPECT_EQ(places.error(),
+            "the pattern '" + evil + "' is too much work; say more of the path, or send fewer at a time");
+  EXPECT_TRUE(small.over());
+  // what is spent is a few names' worth beyond it at most
+  EXPECT_GT(small.left, -30000);
+  // what was found before the work was too much counts for nothing either
+  PatternBudget half{100 * PatternBudget::kName};
+  EXPECT_FALSE(match_places(store, "/toys/*/mass", half).ok());
+  // an exact path costs nothing, and one that is cheap is found with what is left
+  PatternBudget left{20 * PatternBudget::kName};
+  EXPECT_TRUE(match_places(store, "/toys/duck/mass", left).ok());
+  EXPECT_EQ(left.left, 20 * PatternBudget::kName);
+  EXPECT_EQ(match_places(store, "/toys/duck/part/*/mass", left)->size(), 2u);
+  EXPECT_FALSE(match_places(store, "/toys/*/part/*/mass", left).ok());
 }
 
 TEST_F(Catalog, EachPlaceIsFoundOnce) {

@@ -46,7 +46,7 @@ TEST(Table, EachTypeHasAWidthAndAName) {
   const std::pair<RowType, std::pair<std::uint32_t, const char*>> expected[] = {
       {RowType::number, {1, "number"}}, {RowType::integer, {1, "integer"}}, {RowType::boolean, {1, "boolean"}},
       {RowType::choice, {1, "choice"}}, {RowType::vec3, {3, "vec3"}},       {RowType::flags3, {3, "flags3"}},
-      {RowType::quat, {4, "quat"}},     {RowType::none, {0, "action"}}};
+      {RowType::quat, {4, "quat"}},     {RowType::none, {0, "action"}},     {RowType::text, {0, "text"}}};
   for (const auto& [type, e] : expected) {
     EXPECT_EQ(width_of(type), e.first);
     EXPECT_EQ(type_name(type), e.second);

@@ -86,7 +86,7 @@ return behavior {
   EXPECT_EQ(type.doc, "Hums.");
   EXPECT_FALSE(type.is_built_in);
   EXPECT_EQ(type.table->row_names(),
-            (std::vector<std::string_view>{"active", "time", "remove", "rate", "loud", "place", "mood"}));
+            (std::vector<std::string_view>{"active", "time", "remove", "rate", "loud", "place", "mood", "error"}));
   const Row& rate = stage.row("rate");
   EXPECT_EQ(rate.type, RowType::number);
   EXPECT_EQ(rate.kind, RowKind::property);

@@ -14,6 +14,8 @@ ffi.cdef [[
   typedef struct joint { const int32_t slot_, generation_; } joint;
   typedef struct motor { const int32_t slot_, generation_; } motor;
   typedef struct shape { const int32_t slot_, generation_; } shape;
+  typedef struct visuals { const int32_t slot_, generation_; } visuals;
+  typedef struct camera { const int32_t slot_, generation_; } camera;
   typedef struct list { const int32_t slot_, generation_, kind_; } list;
   typedef struct link { const int32_t slot_, generation_, number_; } link;
   typedef struct timer { const int32_t number_; } timer;

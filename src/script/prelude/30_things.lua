@@ -11,7 +11,7 @@ function P.add_class(class) by_table[class.table], by_ctype[tonumber(class.ctype
 -- behaviours have a table each type: their classes are made when they are met (55_behaviors.lua)
 local function class_of_table(number) return by_table[number] or P.make_class(number) end
 P.class_of_table = class_of_table
-for i, name in ipairs { "sim", "body", "part", "joint", "motor", "shape" } do
+for i, name in ipairs { "sim", "body", "part", "joint", "motor", "shape", "visuals", "camera" } do
   local class = { name = name, ctype = ffi.typeof(name), getters = {}, setters = {}, methods = {}, rows = {} }
   class.number = i - 1
   classes[name], by_ctype[tonumber(class.ctype)] = class, class
@@ -25,6 +25,8 @@ function P.number_classes()
   end
 end
 P.number_classes()
+-- what errors call those of which there is one
+classes.sim.only, classes.visuals.only, classes.camera.only = "sim", "visuals", "visuals.camera"
 
 -- handles: one for each slot, so that a thing is always the same key of a table; names stay for the gone ones
 local handles = {}
@@ -69,7 +71,7 @@ P.class_of = class_of
 
 local function label(h)
   local class = class_of(h)
-  if not class or class.name == "sim" then return class and "sim" or "params" end
+  if not class or class.only then return class and class.only or "params" end
   local owner = owners[h]
   return format("%s '%s%s'", class.name, owner and names[owner] .. "/" or "", names[h])
 end
@@ -103,7 +105,7 @@ function P.check_self(h, class, method)
 end
 
 -- RowType and RowKind of params/table.h, as far as they make a difference here
-local kBoolean, kChoice, kVec3, kFlags3, kQuat = 2, 3, 4, 5, 6
+local kBoolean, kChoice, kVec3, kFlags3, kQuat, kText = 2, 3, 4, 5, 6, 8
 local kReadout, kAction = 2, 3
 
 -- what reads a row: by its type, from the live or the kept block, or computed for a view
@@ -252,7 +254,7 @@ function P.derive(class)
     class.rows[row.name] = row
     if row.kind == kAction then
       class.methods[row.name] = method_of(class, row)
-    else
+    elseif row.type ~= kText then  -- a text's getter is written by hand
       class.getters[row.name] = getter_of(row)
       if row.writable then class.setters[row.name] = setter_of(row) end
     end

@@ -112,7 +112,7 @@ function P.make_env(file)
   add_functions(env)
   env.require = make_require(env, file)
   env.vec3, env.quat, env.rgb, env.rng = P.vec3, P.make_quat(), P.rgb, P.R(-2 - file, 0)
-  env.sim, env.osc, env.params = P.sim, P.osc, P.params
+  env.sim, env.osc, env.params, env.visuals = P.sim, P.osc, P.params, P.visuals
   if kind == "scene" then env.state = P.first_state() end
   return setmetatable(env, {
     __index = function(_, key)
@@ -149,7 +149,7 @@ function P.entry.names()
     end
   end
   for _, key in ipairs(P.osc_members) do lines[#lines + 1] = "osc." .. key end
-  for _, name in ipairs { "sim", "body", "part", "joint", "motor", "shape" } do
+  for _, name in ipairs { "sim", "body", "part", "joint", "motor", "shape", "visuals", "camera" } do
     local class = P.classes[name]
     for _, key in ipairs(P.sorted_keys(class.getters)) do lines[#lines + 1] = name .. "." .. key end
     for _, key in ipairs(P.sorted_keys(class.methods)) do lines[#lines + 1] = name .. ":" .. key end

@@ -1,0 +1,144 @@
+// The clients are a few lines over plain sockets; one thread reads for all of them.
+#include "app/bench_query.h"
+
+#include <netinet/in.h>
+#include <poll.h>
+#include <sys/socket.h>
+
+#include <array>
+#include <atomic>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "app/bench_arms.h"
+#include "app/bench_times.h"
+#include "app/query_doors.h"
+
+namespace limber {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr int kListenedArms = 16;
+constexpr int kClients = 100;
+constexpr int kPaths = 50;
+constexpr int kRounds = 4;
+constexpr double kTick = 1.0 / 60;
+
+// RFC 6455: the last frame of a text of less than 126 bytes, masked with zeros
+std::string text_frame(const std::string& text) {
+  std::string frame = "\x81";
+  frame += static_cast<char>(0x80 | text.size());
+  return frame + std::string(4, '\0') + text;
+}
+
+// connects, asks to be a WebSocket and listens to everything at once
+Socket connect_client(std::uint16_t port, int number) {
+  Socket client(socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0));
+  const sockaddr_in at = socket_address({0x7f000001, port});
+  if (connect(client.fd(), reinterpret_cast<const sockaddr*>(&at), sizeof at) != 0) return {};
+  std::string words =
+      "GET / HTTP/1.1\r\nHost: localhost\r\nUpgrade: websocket\r\nConnection: Upgrade\r\nSec-WebSocket-Version: 13\r\n"
+      "Sec-WebSocket-Key: dGhlIHNhbXBsZSBub25jZQ==\r\n\r\n";
+  // an answer first: what comes before it would be no frame
+  if (send(client.fd(), words.data(), words.size(), MSG_NOSIGNAL) < 0) return {};
+  std::array<char, 1024> answer;
+  if (recv(client.fd(), answer.data(), answer.size(), 0) <= 0) return {};
+  words.clear();
+  for (int i = 0; i < kPaths; i++) {
+    const std::string path =
+        fmt::format("/physics/body/arm{}/part/part{}/position", (number + i) % kListenedArms + 1, i % 16 + 1);
+    words += text_frame(fmt::format(R"({{"COMMAND":"LISTEN","DATA":"{}"}})", path));
+  }
+  if (send(client.fd(), words.data(), words.size(), MSG_NOSIGNAL) < 0) return {};
+  return client;
+}
+
+class Clients {
+ public:
+  explicit Clients(std::uint16_t port) {
+    for (int i = 0; i < kClients; i++) sockets_.push_back(connect_client(port, i));
+    reader_ = std::thread([this] { read(); });
+  }
+  ~Clients() {
+    over_ = true;
+    reader_.join();
+  }
+  Clients(const Clients&) = delete;
+  Clients& operator=(const Clients&) = delete;
+  std::uint64_t bytes() const { return bytes_.load(); }
+
+ private:
+  void read() {
+    std::vector<pollfd> polled;
+    for (const Socket& s : sockets_) polled.push_back({s.fd(), POLLIN, 0});
+    std::vector<char> buffer(1 << 16);
+    while (!over_) {
+      poll(polled.data(), polled.size(), 20);
+      for (const pollfd& p : polled) {
+        if ((p.revents & POLLIN) == 0) continue;
+        const ssize_t n = recv(p.fd, buffer.data(), buffer.size(), MSG_DONTWAIT);
+        if (n > 0) bytes_ += static_cast<std::uint64_t>(n);
+      }
+    }
+  }
+
+  std::vector<Socket> sockets_;
+  std::atomic<bool> over_{false};
+  std::atomic<std::uint64_t> bytes_{0};
+  std::thread reader_;
+};
+
+// so many ticks in real time: what each takes of the processor
+void play(BenchArms& arms, int ticks, Samples& samples) {
+  double next = bench_seconds();
+  for (int i = 0; i < ticks; i++) {
+    arms.drive(arms.time());
+    const double begin = thread_seconds();
+    arms.tick();
+    samples.add(thread_seconds() - begin);
+    next += kTick;
+    std::this_thread::sleep_for(std::chrono::duration<double>(next - bench_seconds()));
+  }
+}
+
+}  // namespace
+
+nlohmann::ordered_json bench_query(const BenchOptions& options) {
+  const int ticks = options.ticks > 0 ? options.ticks : 150;
+  BenchArms arms(bench_arm_scene(kListenedArms));
+  Network network(arms.link(), {std::vector<ListenAddress>{}, std::vector<StreamTarget>{}, {}, false}, live_offsets());
+  QueryServer server(arms.link(), query_doors(network, {}));
+  if (const Result<void> started = server.start({"127.0.0.1", 0}); !started) return {{"fault", started.error()}};
+  Samples alone, listened;
+  double seconds = 0;
+  std::uint64_t bytes = 0;
+  play(arms, 20, alone);
+  alone = {};
+  for (int round = 0; round < kRounds; round++) {
+    play(arms, ticks, alone);
+    const Clients clients(server.port());
+    Samples first;
+    play(arms, 20, first);  // each is told all values once
+    const std::uint64_t before = clients.bytes();
+    const double begin = bench_seconds();
+    play(arms, ticks, listened);
+    seconds += bench_seconds() - begin;
+    bytes += clients.bytes() - before;
+  }
+  server.stop();
+  // a frame: head of 2 bytes, address padded to a multiple of 4, tags, three numbers
+  constexpr double kFrame = 2 + 44 + 8 + 12;
+  return {{"clients", kClients},
+          {"paths_each", kPaths},
+          {"values_per_second", rounded(static_cast<double>(bytes) / kFrame / seconds, -2)},
+          {"tick_alone_us", alone.microseconds()},
+          {"tick_listened_us", listened.microseconds()},
+          {"ratio_of_medians", rounded(listened.at(0.5) / alone.at(0.5), 3)}};
+}
+
+}  // namespace limber

@@ -1,0 +1,53 @@
+// The two rooms beside each other meet here.
+#include "app/query_doors.h"
+
+#include <memory>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "base/text.h"
+#include "osc/encode.h"
+
+namespace limber {
+
+Result<std::optional<std::vector<ListenAddress>>> parse_query(const std::string& text) {
+  if (text.empty()) return std::optional<std::vector<ListenAddress>>();
+  Result<std::vector<ListenAddress>> list = parse_listen("--query", text);
+  if (!list) return Error{list.error()};
+  if (list->size() > 1)
+    return Error{fmt::format("--query '{}': one address is enough; write --query [ADDR:]PORT", printable(text))};
+  return std::optional(std::move(*list));
+}
+
+QueryDoors query_doors(Network& network, std::vector<Cidr> allow) {
+  QueryDoors doors;
+  doors.encode = [buffer = std::make_shared<PacketBuffer>()](const Message& message, std::string_view tags) {
+    const std::span<const char> packet =
+        tags.empty() ? encode_message(message, *buffer) : encode_tagged(message, tags, *buffer);
+    return std::string(packet.begin(), packet.end());
+  };
+  doors.take = [&network](const Origin& origin, std::string packet) { network.take(origin, std::move(packet)); };
+  doors.osc_port = [&network]() -> std::optional<std::uint16_t> {
+    const std::vector<Endpoint> bound = network.bound();
+    return bound.empty() ? std::nullopt : std::optional(bound.front().port);
+  };
+  doors.allowed = [allow = std::move(allow)](std::uint32_t ip) { return holds(allow, ip); };
+  return doors;
+}
+
+std::optional<ListenAddress> query_address(const std::optional<std::vector<ListenAddress>>& wish, const OscPlan& osc) {
+  if (wish) return wish->empty() ? std::nullopt : std::optional(wish->front());
+  ListenAddress usual;
+  if (!osc.listen.empty()) usual.port = osc.listen.front().port;
+  return usual;
+}
+
+std::string query_line(const std::optional<ListenAddress>& at, const QueryServer& server) {
+  std::string line = "OSCQuery off";
+  if (at && server.port() != 0)
+    line = fmt::format("OSCQuery and remote panel http://{}:{}/", at->address, server.port());
+  return line;
+}
+
+}  // namespace limber

@@ -1,0 +1,123 @@
+// Two questions behind the message, one after the other: the second is answered in a later tick, when the scene's own
+// handlers have heard the message too; then all answers have come.
+#include "app/send.h"
+
+#include <netinet/in.h>
+#include <poll.h>
+#include <sys/socket.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <functional>
+#include <optional>
+
+#include <fmt/format.h>
+
+#include "app/exit_code.h"
+#include "base/clock_seconds.h"
+#include "base/text.h"
+#include "engine/traffic.h"
+#include "osc/decode.h"
+#include "osc/encode.h"
+#include "osc/socket.h"
+#include "osc/validate.h"
+
+namespace limber {
+
+namespace {
+
+constexpr const char* kLast = "/physics/sim/tick";  // asked for behind the message
+
+Result<Endpoint> endpoint_named(const std::string& text) {
+  const std::size_t colon = text.rfind(':');
+  const std::string host = colon == std::string::npos ? "127.0.0.1" : text.substr(0, colon);
+  const std::optional<double> port = parse_number(text.substr(colon + 1));
+  if (!port || *port < 1 || *port > 65535 || *port != static_cast<std::uint16_t>(*port))
+    return Error{fmt::format("--to '{}' is no place to send to; write --to [HOST:]PORT", printable(text))};
+  const Result<Endpoint> at = resolve(host, static_cast<std::uint16_t>(*port));
+  if (!at) return Error{fmt::format("--to '{}': {}", printable(text), at.error())};
+  return at;
+}
+
+// what came in one datagram; messages that are none are nobody's answer
+std::vector<Message> receive(int fd, double seconds) {
+  pollfd polled{fd, POLLIN, 0};
+  if (poll(&polled, 1, static_cast<int>(std::max(seconds, 0.0) * 1000) + 1) <= 0) return {};
+  std::vector<char> bytes(65536);
+  const ssize_t got = recv(fd, bytes.data(), bytes.size(), 0);
+  if (got <= 0 || packet_fault(bytes.data(), static_cast<std::size_t>(got)) != nullptr) return {};
+  Result<Decoded> decoded = decode_packet(bytes.data(), static_cast<std::size_t>(got));
+  return decoded ? std::move(decoded->messages) : std::vector<Message>();
+}
+
+struct Heard {
+  bool whole = false;  // nothing more will come
+  bool refused = false;
+};
+
+Heard show_answers(int fd, double wait, const std::function<void()>& ask) {
+  Heard answers;
+  int asked = 1;
+  ask();
+  const double end = clock_seconds() + wait;
+  while (!answers.whole && clock_seconds() < end) {
+    for (const Message& message : receive(fd, end - clock_seconds())) {
+      if (message.address == kLast) {
+        answers.whole = asked == 2;
+        if (asked++ == 1) ask();
+      } else if (message.address == "/error" && message.args.size() == 2) {
+        answers.refused = true;
+        fmt::print(stderr, "limber: {}: {}\n", printable(message.args[0].text), printable(message.args[1].text));
+      } else {
+        fmt::print("{}\n", message_text(message));
+      }
+    }
+  }
+  return answers;
+}
+
+bool send_message(int fd, const Endpoint& to, const Message& message) {
+  PacketBuffer buffer;
+  const std::span<const char> packet = encode_message(message, buffer);
+  const sockaddr_in at = socket_address(to);
+  return !packet.empty() &&
+         sendto(fd, packet.data(), packet.size(), 0, reinterpret_cast<const sockaddr*>(&at), sizeof at) >= 0;
+}
+
+}  // namespace
+
+Arg arg_of(const std::string& word) {
+  const bool quoted = word.size() >= 2 && (word.front() == '\'' || word.front() == '"') && word.back() == word.front();
+  if (quoted) return Arg::of(std::string_view(word).substr(1, word.size() - 2));
+  if (word == "true" || word == "false") return Arg::of(word == "true");
+  const std::optional<double> number = parse_number(word);
+  return number ? Arg::of(*number) : Arg::of(word);
+}
+
+int send_command(const SendCommand& command) {
+  Message message{command.address, {}};
+  if (!message.address.starts_with('/'))
+    return fail(kUsage, fmt::format("send: '{}' is no address: it must begin with /", message.address));
+  for (const std::string& word : command.words) message.args.push_back(arg_of(word));
+  const Result<Endpoint> to = endpoint_named(command.to);
+  if (!to) return fail(kUsage, "send: " + to.error());
+  const Result<Socket> socket = open_udp({});
+  if (!socket) return fail(kMachine, "send: " + socket.error());
+  if (!send_message(socket->fd(), *to, message)) {
+    return fail(
+        kMachine,
+        fmt::format("send: the message could not be sent to {}; is it too long, or the address wrong?", command.to));
+  }
+  if (command.wait <= 0) return kFine;
+  const auto ask = [&] { (void)send_message(socket->fd(), *to, {"/get", {Arg::of(kLast)}}); };
+  const Heard answers = show_answers(socket->fd(), command.wait, ask);
+  if (answers.refused) return kInput;
+  if (!answers.whole) {
+    return fail(
+        kMachine,
+        fmt::format("send: nobody answers at {}; is Limber playing there? (--wait 0 asks for no answer)", command.to));
+  }
+  return kFine;
+}
+
+}  // namespace limber

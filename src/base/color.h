@@ -1,0 +1,25 @@
+// Colours: hue, saturation, brightness, each 0 .. 1, as scenes and messages write them.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/vec.h"
+
+namespace limber {
+
+/// From red, green, blue (0 .. 1).
+inline Vec3 hsb_of(const Vec3& rgb) {
+  const double most = std::max({rgb.x, rgb.y, rgb.z});
+  const double range = most - std::min({rgb.x, rgb.y, rgb.z});
+  if (most <= 0 || range <= 0) return {0, 0, std::max(most, 0.0)};
+  double sixth = 4 + (rgb.x - rgb.y) / range;
+  if (most == rgb.x) {
+    sixth = (rgb.y - rgb.z) / range;
+  } else if (most == rgb.y) {
+    sixth = 2 + (rgb.z - rgb.x) / range;
+  }
+  return {sixth / 6 - std::floor(sixth / 6), range / most, most};
+}
+
+}  // namespace limber

@@ -1,0 +1,111 @@
+// A bar: a slider with a number beside it. Wide ranges are stretched, so that usual values are not all at one end.
+'use strict';
+
+const bars = (() => {
+  const STEPS = 1000;
+
+  // where on the bar (0 .. 1) a value stands, and back
+  function scale(min, max, usual) {
+    const bound = Math.max(Math.abs(min), Math.abs(max));
+    const size = Math.abs(usual) || 1;
+    const span = max - min;
+    if (span <= 200 || size > bound / 20) return { to: (v) => (v - min) / span, from: (p) => min + p * span };
+    // the usual size stands at four tenths of the way from the middle, or from the lower end
+    const power = Math.log((size - (min > 0 ? min : 0)) / bound) / Math.log(0.4);
+    if (min >= 0) {
+      return { to: (v) => Math.pow(Math.max(0, (v - min) / span), 1 / power), from: (p) => min + span * Math.pow(p, power) };
+    }
+    return {
+      to: (v) => 0.5 + 0.5 * Math.sign(v) * Math.pow(Math.abs(v) / bound, 1 / power),
+      from: (p) => Math.min(max, Math.max(min, bound * Math.sign(p - 0.5) * Math.pow(Math.abs(2 * p - 1), power))),
+    };
+  }
+
+  // five digits of what the hand moves: nobody wants 0.30000001
+  function shown(value, whole) {
+    if (typeof value !== 'number' || !isFinite(value)) return '';
+    return whole ? String(Math.round(value)) : String(Number(value.toPrecision(5)));
+  }
+
+  // options: min, max, usual, whole, step, label; changed(value) is called while a hand moves it
+  function make(options, changed) {
+    const box = document.createElement('div');
+    box.className = 'axis';
+    const number = document.createElement('input');
+    number.type = 'number';
+    number.className = 'number';
+    number.step = options.whole ? '1' : 'any';
+    number.inputMode = options.min >= 0 ? 'decimal' : 'text';
+    number.setAttribute('aria-label', options.label);
+    const bounded = isFinite(options.min) && isFinite(options.max);
+    if (isFinite(options.min)) number.min = options.min;
+    if (isFinite(options.max)) number.max = options.max;
+    let range = null;
+    let stretch = null;
+    if (bounded && options.max > options.min) {
+      stretch = scale(options.min, options.max, options.usual);
+      const bar = document.createElement('div');
+      bar.className = 'bar';
+      range = document.createElement('input');
+      range.type = 'range';
+      range.min = 0;
+      range.max = STEPS;
+      range.step = 1;
+      range.setAttribute('aria-label', options.label);
+      bar.append(range);
+      box.append(bar);
+    } else {
+      number.classList.add('wide');
+    }
+    box.append(number);
+
+    const widget = { box, held: false, value: NaN, show, release() {} };
+    function paint(value) {
+      if (!range) return;
+      const at = Math.min(1, Math.max(0, stretch.to(value)));
+      const zero = Math.min(1, Math.max(0, stretch.to(Math.min(options.max, Math.max(options.min, 0)))));
+      range.style.setProperty('--from', Math.min(at, zero));
+      range.style.setProperty('--to', Math.max(at, zero));
+      if (!widget.held || document.activeElement !== range) range.value = Math.round(at * STEPS);
+      range.setAttribute('aria-valuetext', shown(value, options.whole));
+    }
+    function show(value) {
+      widget.value = value;
+      paint(value);
+      if (document.activeElement !== number) number.value = shown(value, options.whole);
+    }
+    function hold() { widget.held = true; }
+    function release() {
+      if (!widget.held) return;
+      widget.held = false;
+      widget.release();
+    }
+    if (range) {
+      range.addEventListener('pointerdown', hold);
+      for (const end of ['pointerup', 'pointercancel', 'change', 'blur']) range.addEventListener(end, release);
+      range.addEventListener('input', () => {
+        const value = stretch.from(range.value / STEPS);
+        widget.value = options.whole ? Math.round(value) : Number(value.toPrecision(5));
+        paint(widget.value);
+        number.value = shown(widget.value, options.whole);
+        changed(widget.value);
+      });
+      range.addEventListener('keydown', (event) => {
+        if (event.key !== 'Home' && event.key !== 'End' && !/^(Arrow|Page)/.test(event.key)) return;
+        widget.held = false;
+      });
+    }
+    number.addEventListener('input', () => {
+      const value = Number(number.value);
+      if (number.value === '' || !isFinite(value) || !number.checkValidity()) return;
+      widget.value = value;
+      paint(value);
+      changed(value);
+    });
+    number.addEventListener('blur', () => show(widget.value));
+    number.addEventListener('keydown', (event) => { if (event.key === 'Enter') number.blur(); });
+    return widget;
+  }
+
+  return { make, shown };
+})();

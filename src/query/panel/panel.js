@@ -1,0 +1,273 @@
+// The page: transport, behaviours, parameters as the tree has them, search, messages.
+'use strict';
+
+(() => {
+  const byId = (id) => document.getElementById(id);
+  const opened = new Set(['/scene', '/physics/sim']);  // paths whose contents are shown
+  const isThing = (node) => node.CONTENTS !== undefined;
+  const children = (node) => Object.values(node.CONTENTS || {});
+
+  // ---- things that open: their contents are fetched, and heard, only while they are open
+
+  function thing(path, title, fill) {
+    const box = widgets.element('details');
+    const summary = widgets.element('summary');
+    const inside = widgets.element('div', 'inside');
+    if (title) summary.append(title);
+    box.append(summary, inside);
+    box.dataset.path = path;
+    let rows = [];
+    let turn = 0;
+    const free = () => { for (const r of rows.splice(0)) r.free(); };
+    async function renew() {
+      const mine = ++turn;
+      let node;
+      try { node = await link.get(path, '?LIMBER_DEPTH=1'); } catch (error) { return; }
+      if (mine !== turn || !box.open) return;
+      free();
+      inside.replaceChildren();
+      rows = fill(node, inside);
+    }
+    function close() {
+      turn++;
+      free();
+      inside.replaceChildren();
+    }
+    box.addEventListener('toggle', () => {
+      if (box.open) { opened.add(path); renew(); } else { opened.delete(path); close(); }
+    });
+    box.open = opened.has(path);
+    return { element: box, summary, free: close, renew, path, holds: () => rows };
+  }
+
+  function plainFill(node, inside) {
+    const made = [];
+    for (const child of children(node)) {
+      const part = isThing(child) ? thing(child.FULL_PATH, widgets.label(child), plainFill) : widgets.row(child);
+      inside.append(part.element);
+      made.push(part);
+    }
+    if (made.length === 0) inside.append(widgets.element('p', 'none', 'nothing here'));
+    return made;
+  }
+
+  // ---- parameters: the scene's first, then the world, then everything by its place in the tree
+
+  let sections = [];
+
+  function showParameters(root) {
+    for (const s of sections) s.free();
+    sections = [];
+    const physics = root.CONTENTS.physics;
+    const top = [root.CONTENTS.scene, physics && physics.CONTENTS.sim, physics && physics.CONTENTS.body, root.CONTENTS.osc]
+      .concat(children(physics || {}).filter((c) => !['sim', 'body', 'group'].includes(widgets.label(c))))
+      .concat(children(root).filter((c) => !['scene', 'physics', 'osc', 'transport'].includes(widgets.label(c))));
+    const titles = { '/physics/sim': 'world', '/physics/body': 'bodies', '/osc': 'OSC counters' };
+    const place = byId('parameters');
+    place.replaceChildren();
+    for (const node of top) {
+      if (!node || children(node).length === 0) continue;
+      const section = isThing(node) ? thing(node.FULL_PATH, titles[node.FULL_PATH] || widgets.label(node), plainFill) : widgets.row(node);
+      place.append(section.element);
+      sections.push(section);
+    }
+  }
+
+  // ---- behaviours: groups first, then each body's own
+
+  let behaviors = [];
+
+  function behavior(active, title, of) {
+    const path = active.FULL_PATH.slice(0, active.FULL_PATH.lastIndexOf('/'));
+    const part = thing(path, null, (node, inside) => {
+      const inner = Object.assign({}, node, { CONTENTS: Object.assign({}, node.CONTENTS) });
+      delete inner.CONTENTS.active;
+      return plainFill(inner, inside);
+    });
+    const wrap = widgets.element('label', 'toggle');
+    const input = widgets.element('input');
+    input.type = 'checkbox';
+    wrap.append(input, widgets.element('span', '', title));
+    part.element.classList.add('behavior');
+    part.summary.append(wrap);
+    if (of) part.summary.append(widgets.element('span', 'of', of));
+    wrap.addEventListener('click', (event) => event.stopPropagation());
+    input.addEventListener('change', () => link.send(active.FULL_PATH, 'T', [input.checked]));
+    input.checked = active.VALUE[0];
+    const quiet = link.listen(active.FULL_PATH, (values) => { input.checked = values[0]; });
+    const close = part.free;
+    part.free = () => { quiet(); close(); };
+    return part;
+  }
+
+  async function showBehaviors() {
+    let found;
+    try { found = await link.get('/', '?LIMBER_FIND=' + encodeURIComponent('/physics/ /active')); } catch (error) { return; }
+    for (const b of behaviors) b.free();
+    behaviors = [];
+    const place = byId('behaviors');
+    place.replaceChildren();
+    const rows = found.FOUND.filter((r) => /^[/]physics[/](group[/][^/]+|body[/][^/]+[/]behavior[/][^/]+)[/]active$/.test(r.FULL_PATH));
+    const groups = new Set();
+    const show = (row, title, of) => {
+      const part = behavior(row, title, of);
+      place.append(part.element);
+      behaviors.push(part);
+    };
+    const name = (row, at) => widgets.name(row.FULL_PATH.split('/').slice(0, at + 1).join('/'));
+    for (const row of rows.filter((r) => r.FULL_PATH.startsWith('/physics/group/'))) {
+      groups.add(name(row, 3));
+      show(row, name(row, 3), 'group');
+    }
+    for (const row of rows) {
+      const of = row.FULL_PATH.startsWith('/physics/body/') && !groups.has(name(row, 5));
+      if (of) show(row, name(row, 5), name(row, 3));
+    }
+    if (behaviors.length === 0) place.append(widgets.element('p', 'none', 'this scene has none'));
+    if (found.MORE) place.append(widgets.element('p', 'none', 'and more: search for active'));
+  }
+
+  // ---- search: the server looks through all paths
+
+  let foundRows = [];
+  let searching = 0;
+
+  async function search() {
+    const words = byId('search').value.trim();
+    const mine = ++searching;
+    const place = byId('found');
+    let found = { FOUND: [], MORE: false };
+    if (words) {
+      try { found = await link.get('/', '?LIMBER_FIND=' + encodeURIComponent(words)); } catch (error) { return; }
+    }
+    if (mine !== searching) return;
+    for (const r of foundRows.splice(0)) r.free();
+    place.replaceChildren();
+    place.hidden = !words;
+    byId('parameters').hidden = Boolean(words);
+    for (const node of found.FOUND) {
+      const row = widgets.row(node, true);
+      foundRows.push(row);
+      place.append(row.element);
+    }
+    if (words && foundRows.length === 0) place.append(widgets.element('p', 'none', 'nothing is called so'));
+    if (found.MORE) place.append(widgets.element('p', 'none', 'there are more; another word narrows it'));
+  }
+
+  // ---- messages
+
+  let errors = 0;
+
+  function message(level, text) {
+    const list = byId('messages');
+    const low = list.scrollTop + list.clientHeight >= list.scrollHeight - 4;
+    list.append(widgets.element('li', level, text));
+    while (list.children.length > 300) list.firstChild.remove();
+    if (low) list.scrollTop = list.scrollHeight;
+    if (level === 'error') errors++;
+    byId('errors').hidden = errors === 0;
+    byId('errors').textContent = errors === 1 ? '1 error' : errors + ' errors';
+  }
+
+  function clearMessages() {
+    errors = 0;
+    byId('messages').replaceChildren();
+    byId('errors').hidden = true;
+  }
+
+  // ---- transport
+
+  const PAUSE = 'M4 3h3v10H4zM9 3h3v10H9z';
+  const PLAY = 'M4 3v10l9-5z';
+  let paused = false;
+
+  function showPaused(values) {
+    paused = Boolean(values[0]);
+    byId('play').setAttribute('aria-pressed', String(paused));
+    byId('play').setAttribute('aria-label', paused ? 'play' : 'pause');
+    byId('play-shape').setAttribute('d', paused ? PLAY : PAUSE);
+  }
+  function showTime([seconds]) {
+    const rest = (seconds % 60).toFixed(2).padStart(5, '0');
+    byId('time').textContent = Math.floor(seconds / 60) + ':' + rest;
+  }
+  // lit while what it counts grows
+  function lamp(id) {
+    let last = null;
+    let out = 0;
+    return ([count]) => {
+      if (last !== null && count !== last) {
+        byId(id).classList.add('lit');
+        clearTimeout(out);
+        out = setTimeout(() => byId(id).classList.remove('lit'), 400);
+      }
+      last = count;
+    };
+  }
+  function press(action) { link.send('/transport/' + action, 'N', []); }
+
+  // ---- what comes and goes
+
+  let due = 0;
+  const changedPaths = new Set();
+
+  function renewOpen(parts) {
+    for (const part of parts) {
+      if (!part.renew || !part.element.open) continue;
+      const touched = [...changedPaths].some((p) => p.slice(0, p.lastIndexOf('/')) === part.path || p === part.path);
+      if (touched) part.renew(); else renewOpen(part.holds());
+    }
+  }
+  function notice(command, path) {
+    changedPaths.add(path);
+    clearTimeout(due);
+    due = setTimeout(() => {
+      const all = [...changedPaths];
+      if (all.some((p) => p === '/' || p.split('/').length <= 3)) return load();
+      renewOpen(sections);
+      renewOpen(behaviors);
+      if (all.some((p) => /[/](behavior|group|body)([/]|$)/.test(p))) showBehaviors();
+      changedPaths.clear();
+    }, 200);
+  }
+
+  async function load() {
+    changedPaths.clear();
+    try {
+      showParameters(await link.get('/', '?LIMBER_DEPTH=3'));
+      await showBehaviors();
+      if (byId('search').value) search();
+    } catch (error) {
+      message('error', 'the tree could not be read: ' + error.message);
+    }
+  }
+
+  link.on.open = () => { clearMessages(); load(); };
+  link.on.state = (text, kind) => {
+    byId('link').textContent = text;
+    byId('link').className = 'link ' + kind;
+  };
+  link.on.notice = notice;
+  link.on.log = (lines) => { for (const line of lines) message(line.LEVEL, line.TEXT); };
+  link.on.error = (address, text) => message('error', address + ': ' + text);
+
+  byId('play').addEventListener('click', () => press(paused ? 'play' : 'pause'));
+  byId('step').addEventListener('click', () => press('step'));
+  byId('reset').addEventListener('click', () => press('reset'));
+  byId('clear').addEventListener('click', clearMessages);
+  let typing = 0;
+  byId('search').addEventListener('input', () => { clearTimeout(typing); typing = setTimeout(search, 150); });
+  document.addEventListener('keydown', (event) => {
+    const free = document.activeElement === document.body || document.activeElement === null;
+    if (event.key === ' ' && free) { event.preventDefault(); press(paused ? 'play' : 'pause'); }
+    if (event.key === '/' && free) { event.preventDefault(); byId('search').focus(); }
+  });
+
+  link.listen('/physics/sim/paused', showPaused);
+  link.listen('/physics/sim/time', showTime);
+  link.listen('/physics/sim/tick', ([tick]) => { byId('tick').textContent = tick; });
+  link.listen('/transport/speed_reached', ([speed]) => { byId('speed').textContent = speed.toFixed(2); });
+  link.listen('/osc/received', lamp('in'));
+  link.listen('/osc/sent', lamp('out'));
+  link.connect();
+})();

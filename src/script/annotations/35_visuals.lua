@@ -1,0 +1,25 @@
+-- What the picture is drawn with.
+
+---The picture: its background, the camera, the materials of the shapes.
+---@class visuals
+---@field alive boolean # read-only. Always true.
+---@field camera camera # read-only.
+---@rows visuals
+visuals = {}
+
+---A shape by its name, whose rows are its material. Those of a URDF file are called robot.link, robot.link.2, …
+---@param key string|integer|shape
+---@return shape
+function visuals:shape(key) end
+
+---The camera. The view is T(position)·Rx·Ry·Rz, in degrees; eye and target are the same in world terms.
+---@class camera
+---@field alive boolean # read-only. Always true.
+---@field projection number[] # { fovy, aspect, near, far }.
+---@rows camera
+local camera_ = {}
+
+---Looks from one point at another, upright.
+---@param eye vec3like
+---@param target vec3like
+function camera_:look_at(eye, target) end

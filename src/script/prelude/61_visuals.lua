@@ -1,0 +1,46 @@
+-- `visuals`: what the picture is drawn with: its background, the camera, the shapes' materials.
+local P = ...
+local api, ctx = P.api, P.ctx
+local fail, describe, classes = P.fail, P.describe, P.classes
+local class, camera = classes.visuals, classes.camera
+local shapes = 4
+
+P.derive(class)
+P.derive(camera)
+class.getters.alive, camera.getters.alive = P.alive, P.alive
+
+class.methods.shape = function(h, key)
+  P.check_self(h, class, "shape")
+  return P.find_in(P.sim, shapes, key)
+end
+
+-- four rows as one value
+local four = { "fovy", "aspect", "near", "far" }
+camera.getters.projection = function(h)
+  local value = {}
+  for i, name in ipairs(four) do value[i] = camera.getters[name](h) end
+  return value
+end
+camera.setters.projection = function(h, value)
+  if type(value) ~= "table" or #value ~= 4 then
+    fail("visuals.camera: 'projection' takes { fovy, aspect, near, far }, not %s", describe(value))
+  end
+  for i, name in ipairs(four) do P.want_number(value[i], "visuals.camera: " .. name) end
+  if value[4] <= value[3] then fail("visuals.camera: what is far must be further away than what is near") end
+  for i, name in ipairs(four) do camera.setters[name](h, value[i]) end
+end
+
+camera.methods.look_at = function(h, eye, target)
+  P.check_self(h, camera, "look_at")
+  eye, target = P.want_vec3(eye, "look_at: the eye"), P.want_vec3(target, "look_at: the target")
+  camera.setters.eye(h, eye)
+  camera.setters.target(h, target)
+  camera.setters.eye(h, eye)
+end
+
+local the_camera = P.thing(P.camera_slot, P.camera_generation)
+class.getters.camera = function() return the_camera end
+
+P.finish(class)
+P.finish(camera)
+P.visuals = P.thing(P.visuals_slot, P.visuals_generation)

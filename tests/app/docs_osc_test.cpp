@@ -1,0 +1,202 @@
+// What docs/osc.md and docs/examples show works: each message of theirs is sent to a scene that has what they name.
+#include <fstream>
+#include <iterator>
+#include <regex>
+#include <sstream>
+
+#include <nlohmann/json.hpp>
+
+#include "app/describe_page.h"
+#include "app/program.h"
+#include "app/send.h"
+#include "engine/engine.h"
+
+namespace limber::app_test {
+namespace {
+
+constexpr const char* kScene = R"(
+params {
+  { "speed", 0.12, min = 0, max = 1 }, { "depth", 0.6, min = 0, max = 1.2 }, { "lag", 0.6, min = 0, max = 3.14 },
+}
+local arm = sim:load_urdf("urdf/arm6.urdf", { name = "arm1" })
+arm:add_behavior("random_force", "wind", { parts = "tip" })
+arm:copy("arm2", { position = vec3(2, 0, 0) })
+sim:add_group_behavior("cohesion", "swarm", { bodies = "arm*", parts = "tip" })
+osc:on("/sway", function() end)
+)";
+
+std::string text_of(const std::string& file) {
+  std::ifstream in(LIMBER_SOURCE_DIR "/docs/" + file);
+  std::string text{std::istreambuf_iterator<char>(in), {}};
+  EXPECT_FALSE(text.empty()) << file;
+  return text;
+}
+
+// the engine that plays it, in this process: what is sent acts with the next tick
+class Desk {
+ public:
+  Desk() {
+    EngineOptions options;
+    options.scene = folder_.file("scene.lua", kScene);
+    options.scene_options.data_dir = LIMBER_SOURCE_DIR;
+    options.fast = true;
+    engine_ = std::make_unique<Engine>(link_, options);
+    const Result<void> started = engine_->start();
+    EXPECT_TRUE(started.ok()) << started.error();
+    outbox();
+  }
+
+  /// Plays it and expects that it was neither refused nor unknown.
+  void expect_taken(const Message& message) {
+    link_.inbox.push({{message}, {Hand::osc, 0x7f000001, 4000}});
+    engine_->tick();
+    for (const Outgoing& out : outbox())
+      EXPECT_NE(out.to, Outgoing::To::error) << message_text(message) << ": " << message_text(out.message);
+    EXPECT_EQ(link_.counters.clamped.load(), 0u) << message_text(message) << " is out of range";
+  }
+
+ private:
+  std::vector<Outgoing> outbox() {
+    std::vector<Outgoing> out;
+    link_.outbox.drain(out);
+    return out;
+  }
+
+  Folder folder_;
+  EngineLink link_;
+  std::unique_ptr<Engine> engine_;
+};
+
+// words as a shell parts them; two blanks end a line of the page, what follows explains
+std::vector<std::string> words_of(const std::string& line) {
+  std::vector<std::string> words;
+  std::string word;
+  char quote = 0;
+  for (std::size_t i = 0; i <= line.size(); i++) {
+    const char c = i < line.size() ? line[i] : ' ';
+    if (quote != 0 ? c == quote : c == '"' || c == '\'') {
+      quote = quote != 0 ? 0 : c;
+    } else if (quote != 0 || c != ' ') {
+      word += c;
+    } else {
+      if (!word.empty()) words.push_back(std::exchange(word, ""));
+      if (i + 1 < line.size() && line[i + 1] == ' ') break;
+    }
+  }
+  return words;
+}
+
+Message message_of(const std::vector<std::string>& words) {
+  Message message{words.at(0), {}};
+  for (std::size_t i = 1; i < words.size(); i++) message.args.push_back(arg_of(words[i]));
+  return message;
+}
+
+TEST(DocsOsc, EveryExampleOfThePageIsTaken) {
+  Desk desk;
+  std::istringstream page(text_of("osc.md"));
+  std::size_t sent = 0;
+  for (std::string line; std::getline(page, line);) {
+    if (!line.starts_with("    ")) continue;
+    std::vector<std::string> words = words_of(line.substr(4));
+    if (words.size() > 2 && words[0] == "limber" && words[1] == "send") words.erase(words.begin(), words.begin() + 2);
+    if (words.empty() || !words[0].starts_with("/")) continue;
+    SCOPED_TRACE(line);
+    desk.expect_taken(message_of(words));
+    sent++;
+  }
+  EXPECT_GE(sent, 25u);
+}
+
+TEST(DocsOsc, TheReferenceIsTodays) {
+  const std::string page = text_of("osc.md");
+  const std::string mark = "<!-- reference -->\n";
+  const std::size_t at = page.find(mark);
+  ASSERT_NE(at, std::string::npos);
+  EXPECT_EQ(page.substr(at + mark.size()), describe_page())
+      << "renew it: put `build/limber describe --markdown` behind the mark";
+}
+
+TEST(DocsOsc, TheLayoutForOpenStageControl) {
+  Desk desk;
+  const auto layout = nlohmann::json::parse(text_of("examples/open-stage-control.json"));
+  std::size_t sent = 0;
+  for (const auto& widget : layout["content"]["widgets"]) {
+    SCOPED_TRACE(widget["id"].get<std::string>());
+    EXPECT_EQ(widget["target"], nlohmann::json::array({"127.0.0.1:9003"}));
+    Message message{widget["address"], {}};
+    const auto add = [&](const nlohmann::json& value) {
+      if (value.is_array()) {
+        for (const auto& v : value) message.args.push_back(v.is_string() ? arg_of(v) : Arg::of(v.get<double>()));
+      } else if (value.is_number()) {
+        message.args.push_back(Arg::of(value.get<double>()));
+      }
+    };
+    add(widget["preArgs"]);
+    add(widget.contains("default") ? widget["default"] : widget["on"]);
+    EXPECT_EQ(widget["typeTags"].get<std::string>().size(), message.args.size());
+    desk.expect_taken(message);
+    sent++;
+  }
+  EXPECT_EQ(sent, layout["content"]["widgets"].size());
+  EXPECT_GE(sent, 10u);
+}
+
+TEST(DocsOsc, SuperCollidersMessages) {
+  Desk desk;
+  const std::string text = text_of("examples/limber.scd");
+  const std::regex message(R"re((?:sendMsg\(|\[)("/[^)\]]*)[)\]])re");
+  std::size_t sent = 0;
+  for (auto it = std::sregex_iterator(text.begin(), text.end(), message); it != std::sregex_iterator(); ++it) {
+    std::string list = (*it)[1];
+    std::ranges::replace(list, ',', ' ');
+    list = std::regex_replace(list, std::regex(" +"), " ");
+    const Message m = message_of(words_of(list));
+    // the network answers these by itself
+    if (m.address == "/subscribe") continue;
+    desk.expect_taken(m);
+    sent++;
+  }
+  EXPECT_GE(sent, 12u);
+}
+
+// a program with that scene, and where it listens and streams to
+struct Player {
+  explicit Player(const std::string& out = "off")
+      : running(limber({folder.file("scripts/scene.lua", kScene), "--osc-in", "127.0.0.1:0", "--osc-out", out,
+                        "--query", "off"})) {
+    EXPECT_TRUE(running.wait_for("playing headless")) << running.err();
+    const std::string mark = "OSC in 127.0.0.1:";
+    const std::size_t at = running.err().find(mark) + mark.size();
+    in = running.err().substr(at, running.err().find('\n', at) - at);
+  }
+  Folder folder;
+  Running running;
+  std::string in;
+};
+
+TEST(DocsOsc, ThePythonProgramPlaysAndReads) {
+  Player player;
+  const std::string file = LIMBER_SOURCE_DIR "/docs/examples/limber.py";
+  const Ran ran = Running({"python3", "-B", file, "--port", player.in, "--seconds", "0.5"}).finish();
+  EXPECT_EQ(ran.code, 0) << ran.err;
+  EXPECT_NE(ran.out.find("gravity is [0.0, 0.0, -9.8"), std::string::npos) << ran.out;
+  EXPECT_NE(ran.out.find("bodies: arm1 arm2\n"), std::string::npos) << ran.out;
+  EXPECT_EQ(ran.out.find("/physics/"), std::string::npos) << "nothing was refused: " << ran.out;
+  const std::size_t at = ran.out.find("frames: ");
+  ASSERT_NE(at, std::string::npos) << ran.out;
+  EXPECT_GT(std::stoi(ran.out.substr(at + 8)), 0);
+}
+
+TEST(DocsOsc, ThePdPatchPlaysAndIsAnswered) {
+  Player player;
+  const std::string patch = LIMBER_SOURCE_DIR "/docs/examples/limber.pd";
+  Running pd({"pd", "-nogui", "-nosound", "-noprefs", "-stderr", "-open", patch, "-send",
+              fmt::format("ports {} {}", player.in, 9), "-send", "gravity -3", "-send", "target 0.5", "-send", "wind 4",
+              "-send", "ask bang"});
+  EXPECT_TRUE(pd.wait_for("gravity 0 0 -3")) << pd.err();
+  EXPECT_EQ(pd.err().find("/error"), std::string::npos) << pd.err();
+}
+
+}  // namespace
+}  // namespace limber::app_test

@@ -1,0 +1,133 @@
+// `limber monitor` and `limber send` beside a program that plays.
+#include "app/playing.h"
+
+namespace limber::app_test {
+namespace {
+
+constexpr const char* kScene = R"(
+params { { "wind", 2, min = 0, max = 10 } }
+local ball = sim:add_sphere_shape("ball", 0.1)
+local arm = sim:add_body("arm")
+arm:add_part("base", ball, { mass = 0 })
+arm:add_part("tip", ball, { position = vec3(0, 0, -1) })
+arm:add_joint("elbow", "base", "tip")
+osc:on("/hello", function(name) osc:reply("/hello/back", name, 2) end)
+)";
+
+// with an OSC port that the system chooses, and the consoles' folder of its own
+struct Stage {
+  explicit Stage(const std::string& out = "off")
+      : running(limber(
+            {folder.file("scripts/scene.lua", kScene), "--osc-in", "127.0.0.1:0", "--osc-out", out, "--query", "off"},
+            environment())) {
+    EXPECT_TRUE(running.wait_for("playing headless")) << running.err();
+    const std::string mark = "OSC in ";
+    const std::size_t at = running.err().find(mark) + mark.size();
+    in = running.err().substr(at, running.err().find('\n', at) - at);
+  }
+  std::vector<std::string> environment() const {
+    return {"env", "XDG_RUNTIME_DIR=" + runtime.path(), "TMPDIR=" + runtime.path()};
+  }
+  Ran send(std::vector<std::string> words) const {
+    words.insert(words.begin(), "send");
+    words.insert(words.end(), {"--to", in});
+    return run(std::move(words));
+  }
+  std::vector<std::string> monitor(std::vector<std::string> words) const {
+    words.insert(words.begin(), "monitor");
+    return limber(std::move(words), environment());
+  }
+  Folder folder;
+  PrivateFolder runtime;
+  Running running;
+  std::string in;
+};
+
+TEST(Send, PrintsWhatIsAnswered) {
+  const Stage stage;
+  const Ran set = stage.send({"/scene/wind", "4.5"});
+  EXPECT_EQ(set.code, 0) << set.err;
+  EXPECT_EQ(set.out, "");
+  EXPECT_EQ(stage.send({"/get", "/scene/wind"}).out, "/scene/wind 4.5\n");
+  EXPECT_EQ(stage.send({"/physics/sim/gravity", "0", "0", "-3.5"}).code, 0) << "numbers below 0 are no options";
+  EXPECT_EQ(stage.send({"/get", "/physics/sim/gravity"}).out, "/physics/sim/gravity 0 0 -3.5\n");
+  EXPECT_EQ(stage.send({"/list/bodies"}).out, "/list/bodies arm\n");
+  EXPECT_EQ(stage.send({"/hello", "two words"}).out, "/hello/back \"two words\" 2\n");
+  EXPECT_EQ(stage.send({"/ping"}).out.substr(0, 6), "/pong ");
+}
+
+TEST(Send, SaysWhatWasWrong) {
+  const Stage stage;
+  const Ran refused = stage.send({"/physics/part/mass", "arm", "tipp", "0.3"});
+  EXPECT_EQ(refused.code, 1);
+  EXPECT_NE(refused.err.find("did you mean 'tip'?"), std::string::npos) << refused.err;
+  EXPECT_EQ(stage.send({"/scene/wimd", "1"}).code, 1);
+  const Ran no_address = run({"send", "scene/wind", "1"});
+  EXPECT_EQ(no_address.code, 2);
+  EXPECT_NE(no_address.err.find("must begin with /"), std::string::npos);
+  EXPECT_EQ(run({"send", "/a", "--to", "127.0.0.1:70000"}).code, 2);
+  // nobody listens on the discard port
+  const Ran nobody = run({"send", "/a", "--to", "127.0.0.1:9", "--wait", "0.2"});
+  EXPECT_EQ(nobody.code, 3);
+  EXPECT_NE(nobody.err.find("nobody answers at 127.0.0.1:9"), std::string::npos) << nobody.err;
+  EXPECT_EQ(run({"send", "/a", "--to", "127.0.0.1:9", "--wait", "0"}).code, 0);
+}
+
+TEST(Monitor, PrintsWhatComesInAndGoesOut) {
+  const Stage stage;
+  Running monitor(stage.monitor({"--count", "4"}));
+  ASSERT_TRUE(monitor.wait_for("watching what goes in"));
+  EXPECT_EQ(stage.send({"/scene/wind", "4.5"}).code, 0);
+  EXPECT_EQ(stage.send({"/physics/part/mass", "nobody", "1", "--wait", "0"}).code, 0);
+  const Ran ran = monitor.finish();
+  EXPECT_EQ(ran.code, 0) << ran.err;
+  EXPECT_NE(ran.out.find("/scene/wind 4.5\n"), std::string::npos) << ran.out;
+  EXPECT_NE(ran.out.find(" < 127.0.0.1:"), std::string::npos) << ran.out;
+  EXPECT_NE(ran.out.find(" > 127.0.0.1:"), std::string::npos) << "the answer to send's own question: " << ran.out;
+}
+
+TEST(Monitor, FiltersByPatternAndWay) {
+  const Stage stage("127.0.0.1:9");
+  Running streams(stage.monitor({"/physics/joint/*", "--out", "--count", "3"}));
+  const Ran ran = streams.finish();
+  EXPECT_EQ(ran.code, 0);
+  for (const char* stream : {"/physics/joint/pos arm ", "/physics/joint/rot arm ", "/physics/joint/relrot arm "})
+    EXPECT_NE(ran.out.find(stream), std::string::npos) << ran.out;
+  EXPECT_NE(ran.out.find("> 127.0.0.1:9 "), std::string::npos) << ran.out;
+  Running in(stage.monitor({"--in", "--count", "1"}));
+  ASSERT_TRUE(in.wait_for("watching what goes in"));
+  stage.send({"/hello", "x", "--wait", "0"});
+  EXPECT_NE(in.finish().out.find("/hello x\n"), std::string::npos);
+}
+
+TEST(Monitor, TellsChanges) {
+  const Stage stage;
+  Running monitor(stage.monitor({"--changes", "--count", "2"}));
+  ASSERT_TRUE(monitor.wait_for("watching changes"));
+  // the first look is what changes are compared with: until it was taken nothing is one
+  double wind = 3;
+  while (monitor.out().find("/scene/wind") == std::string::npos) {
+    wind = wind >= 9 ? 3 : wind + 1;
+    ASSERT_EQ(stage.send({"/scene/wind", fmt::format("{}", wind)}).code, 0);
+    monitor.look();
+  }
+  stage.send({"/scene/wind", "0.5"});
+  const Ran ran = monitor.finish();
+  EXPECT_EQ(ran.code, 0);
+  EXPECT_NE(ran.out.find(" = /scene/wind "), std::string::npos) << ran.out;
+}
+
+TEST(Monitor, SaysWhatIsWrong) {
+  const PrivateFolder empty;
+  const Ran nobody =
+      Running(limber({"monitor"}, {"env", "XDG_RUNTIME_DIR=" + empty.path(), "TMPDIR=" + empty.path()})).finish();
+  EXPECT_EQ(nobody.code, 1);
+  EXPECT_NE(nobody.err.find("limber: monitor: "), std::string::npos) << nobody.err;
+  const Stage stage;
+  const Ran wrong = Running(stage.monitor({"wind"})).finish();
+  EXPECT_EQ(wrong.code, 1);
+  EXPECT_NE(wrong.err.find("'wind' is no address"), std::string::npos) << wrong.err;
+}
+
+}  // namespace
+}  // namespace limber::app_test

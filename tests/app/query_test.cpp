@@ -1,0 +1,193 @@
+// OSC, OSCQuery and the remote panel's port of the running program: one hand's change reaches all the others, once.
+#include <netinet/in.h>
+#include <sys/socket.h>
+
+#include <nlohmann/json.hpp>
+
+#include "app/program.h"
+#include "osc/osc_test_tools.h"
+#include "query/web_client.h"
+
+namespace limber::app_test {
+namespace {
+
+using nlohmann::json;
+using osc_test::Bytes;
+using osc_test::one_float;
+using query_test::WebClient;
+
+constexpr const char* kScene = R"(
+params { { "wind", 0, min = 0, max = 10 }, { "style", "calm", choices = { "calm", "wild" } } }
+local shape = sim:add_sphere_shape("ball", 0.1)
+local body = sim:add_body("ball")
+body:add_part("ball", shape, { mass = 0 })
+osc:on("/more", function() body:copy("more") end)
+osc:on("/less", function() sim:body("more"):remove() end)
+)";
+
+struct Player {
+  Folder folder;
+  Running running;
+  Endpoint osc{0x7f000001, 0};
+  std::uint16_t web = 0;
+
+  explicit Player(const std::vector<std::string>& more = {}) : running(limber(words(more))) {
+    EXPECT_TRUE(running.wait_for("playing headless")) << running.err();
+    osc.port = number_behind("OSC in 127.0.0.1:");
+    web = number_behind("remote panel http://127.0.0.1:");
+  }
+  std::vector<std::string> words(const std::vector<std::string>& more) const {
+    std::vector<std::string> all = {folder.file("s.lua", kScene), "--osc-in", "127.0.0.1:0", "--osc-out", "off"};
+    all.insert(all.end(), more.begin(), more.end());
+    return all;
+  }
+  std::uint16_t number_behind(const std::string& mark) const {
+    const std::size_t at = running.err().find(mark);
+    return at == std::string::npos ? std::uint16_t{0}
+                                   : static_cast<std::uint16_t>(std::atoi(running.err().c_str() + at + mark.size()));
+  }
+};
+
+std::string text_message(std::string_view address, std::string_view word) {
+  return Bytes().text(address).text(",s").text(word).str();
+}
+
+TEST(Query, OneHandsChangeReachesTheOthersOnceWhateverTheirWay) {
+  const Player player;
+  ASSERT_NE(player.web, 0);
+  WebClient one(player.web);
+  WebClient two(player.web);
+  const osc_test::Client udp;
+  for (WebClient* client : {&one, &two}) {
+    ASSERT_EQ(client->upgrade().status, 101);
+    client->listen("/scene/wind");
+    EXPECT_EQ(client->receive(2, "/scene/wind").payload, one_float("/scene/wind", 0));
+  }
+  udp.send(player.osc, Bytes().text("/subscribe").text(",sf").text("/scene/wind").f(100).str());
+  EXPECT_EQ(udp.receive(), one_float("/scene/wind", 0));
+
+  one.binary(one_float("/scene/wind", 3));
+  EXPECT_EQ(two.receive(2, "").payload, one_float("/scene/wind", 3));
+  EXPECT_EQ(udp.receive(), one_float("/scene/wind", 3));
+  udp.send(player.osc, one_float("/scene/wind", 4));
+  EXPECT_EQ(one.receive(2, "").payload, one_float("/scene/wind", 4)) << "and not its own 3 before";
+  EXPECT_EQ(two.receive(2, "").payload, one_float("/scene/wind", 4));
+  two.binary(one_float("/scene/wind", 5));
+  EXPECT_EQ(one.receive(2, "").payload, one_float("/scene/wind", 5));
+  EXPECT_EQ(udp.receive(), one_float("/scene/wind", 5)) << "and not its own 4 before";
+  EXPECT_EQ(one.until_pong("one"), std::vector<std::string>{});
+  EXPECT_EQ(two.until_pong("two"), std::vector<std::string>{});
+  // what its range makes of a value its sender hears as well
+  one.binary(one_float("/scene/wind", 99));
+  EXPECT_EQ(one.receive(2, "").payload, one_float("/scene/wind", 10));
+}
+
+TEST(Query, ValuesAndAnswersOfEveryKind) {
+  const Player player;
+  WebClient client(player.web);
+  ASSERT_EQ(client.upgrade().status, 101);
+  client.binary(text_message("/scene/style", "wild"));
+  client.listen("/scene/style");
+  EXPECT_EQ(client.receive(2, "wild").payload, text_message("/scene/style", "wild"));
+  client.listen("/physics/body/ball/part/ball/rotation");
+  EXPECT_EQ(client.receive(2, "rotation").payload,
+            Bytes().text("/physics/body/ball/part/ball/rotation").text(",[ffff]").f(0).f(0).f(0).f(1).str());
+  client.listen("/physics/sim/paused");
+  EXPECT_EQ(client.receive(2, "paused").payload, Bytes().text("/physics/sim/paused").text(",F").str());
+  client.binary(Bytes().text("/transport/pause").text(",N").str());
+  EXPECT_EQ(client.receive(2, "paused").payload, Bytes().text("/physics/sim/paused").text(",T").str());
+  // questions and mistakes are answered on the same way
+  client.binary(text_message("/get", "/scene/wind"));
+  EXPECT_EQ(client.receive(2, "/scene/wind").payload, one_float("/scene/wind", 0));
+  client.binary(Bytes().text("/ping").str());
+  EXPECT_EQ(client.receive(2, "/pong").opcode, 2);
+  client.binary(one_float("/scene/wimd", 1));
+  EXPECT_NE(client.receive(2, "/error").payload.find("/scene/wimd"), std::string::npos);
+  client.binary(text_message("/subscribe", "/scene/wind"));
+  EXPECT_NE(client.receive(2, "/error").payload.find("LISTEN"), std::string::npos);
+  // bytes that are no OSC are counted, as by UDP
+  client.binary("\x01\x02 nonsense");
+  client.binary(std::string(12, '\xff'));
+  client.listen("/osc/malformed");
+  EXPECT_EQ(client.receive(2, Bytes().text("/osc/malformed").text(",i").u32(2).str()).opcode, 2);
+}
+
+TEST(Query, TheTreeFollowsTheScene) {
+  const Player player;
+  WebClient client(player.web);
+  WebClient http(player.web);
+  ASSERT_EQ(client.upgrade().status, 101);
+  client.listen("/scene/wind");
+  client.receive(2, "/scene/wind");
+  client.binary(Bytes().text("/more").str());
+  EXPECT_EQ(client.receive(1, "PATH_").payload, R"({"COMMAND":"PATH_ADDED","DATA":"/physics/body/more"})");
+  EXPECT_EQ(http.get("/physics/body/more/part/ball/mass?VALUE").body, R"({"VALUE":[0]})");
+  client.binary(Bytes().text("/less").str());
+  EXPECT_EQ(client.receive(1, "PATH_").payload, R"({"COMMAND":"PATH_REMOVED","DATA":"/physics/body/more"})");
+  EXPECT_EQ(http.get("/physics/body/more").status, 404);
+  const json info = json::parse(http.get("/?HOST_INFO").body);
+  EXPECT_EQ(info["OSC_PORT"], player.osc.port);
+}
+
+TEST(Query, ThePageIsWholeAndAsksNobodyElse) {
+  const Player player;
+  WebClient client(player.web);
+  const query_test::Reply page = client.get("/", "Accept: text/html\r\n");
+  EXPECT_EQ(page.status, 200);
+  EXPECT_TRUE(page.says("Content-Type: text/html; charset=utf-8"));
+  EXPECT_TRUE(page.body.starts_with("<!doctype html>"));
+  EXPECT_TRUE(page.body.find("</html>") != std::string::npos);
+  EXPECT_EQ(page.body.find("@file:"), std::string::npos) << "every file stands in it";
+  for (const char* outside : {"src=", "@import", "https://", "//cdn", "href=\"http"})
+    EXPECT_EQ(page.body.find(outside), std::string::npos) << outside;
+  // the only addresses are names of SVG's grammar and the way back here
+  std::size_t addresses = 0;
+  for (std::size_t at = page.body.find("http:"); at != std::string::npos; at = page.body.find("http:", at + 1)) {
+    EXPECT_EQ(page.body.substr(at, 26), "http://www.w3.org/2000/svg") << page.body.substr(at, 60);
+    addresses++;
+  }
+  EXPECT_GT(addresses, 0u);
+  EXPECT_LT(page.body.size(), 100000u) << "a phone fetches it in a moment";
+}
+
+// the numbers: that of --osc-in unless said otherwise, and 9003 is left to who asked for it
+TEST(Query, ListensWhereItIsTold) {
+  const osc_test::Client holder;  // a number that is free for TCP too, most likely
+  const std::string port = std::to_string(holder.end().port);
+  {
+    Folder folder;
+    Running running(
+        limber({folder.file("s.lua", kScene), "--osc-in", "127.0.0.1:0", "--osc-out", "off", "--query", port}));
+    ASSERT_TRUE(running.wait_for("remote panel http://127.0.0.1:" + port + "/")) << running.err();
+  }
+  Folder folder;
+  const std::string scene = folder.file("s.lua", kScene);
+  const Ran off = run({scene, "--fast", "--ticks", "1"});
+  EXPECT_NE(off.err.find("OSCQuery off"), std::string::npos) << off.err;
+  const Ran on = run({scene, "--fast", "--ticks", "1", "--query", "127.0.0.1:0"});
+  EXPECT_NE(on.err.find("remote panel http://127.0.0.1:"), std::string::npos) << on.err;
+}
+
+TEST(Query, ATakenPortIsSurvivedWhereItIsOptional) {
+  Folder folder;
+  Player first;
+  const std::string port = std::to_string(first.web);
+  const std::vector<std::string> words = {folder.file("s.lua", kScene), "--fast", "--ticks", "3", "--query", port};
+  const Ran taken = run(words);
+  EXPECT_EQ(taken.code, 3);
+  EXPECT_NE(taken.err.find("OSCQuery can't listen on 127.0.0.1:" + port), std::string::npos) << taken.err;
+  std::vector<std::string> optional = words;
+  optional.emplace_back("--osc-optional");
+  const Ran played = run(optional);
+  EXPECT_EQ(played.code, 0) << played.err;
+  EXPECT_NE(played.err.find("OSCQuery off"), std::string::npos) << played.err;
+}
+
+TEST(Query, SendersThatAreLeftOutAreLeftOutHereToo) {
+  const Player player({"--osc-allow", "192.0.2.0/24"});
+  WebClient client(player.web);
+  EXPECT_EQ(client.get("/").status, 403);
+}
+
+}  // namespace
+}  // namespace limber::app_test

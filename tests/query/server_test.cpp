@@ -1,0 +1,334 @@
+// The server on real sockets: HTTP and WebSocket on one port, what is bad or slow or too much, ports that are taken.
+#include "query/server.h"
+
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <chrono>
+#include <functional>
+#include <thread>
+
+#include <nlohmann/json.hpp>
+
+#include "base/log.h"
+#include "engine/everything.h"
+#include "engine/show.h"
+#include "query/fake_doors.h"
+#include "query/web_client.h"
+
+namespace limber::query_test {
+namespace {
+
+using nlohmann::json;
+
+// an engine that plays, and the server before it; packets of clients are "address number" and set that
+struct Stage {
+  engine_test::SceneFile file{engine_test::kEverything};
+  EngineLink link;
+  Engine engine{link, options(file.path())};
+  QueryServer server{link, doors()};
+  std::thread sim;
+
+  explicit Stage(bool plays = true) {
+    EXPECT_TRUE(engine.start().ok());
+    const Result<void> started = server.start({"127.0.0.1", 0});
+    EXPECT_TRUE(started.ok()) << (started.ok() ? "" : started.error());
+    if (plays) sim = std::thread([this] { engine.run(); });
+  }
+  ~Stage() {
+    engine.stop();
+    if (sim.joinable()) sim.join();
+    server.stop();
+  }
+  static EngineOptions options(const std::string& scene) {
+    EngineOptions options;
+    options.scene = scene;
+    return options;
+  }
+  QueryDoors doors() {
+    QueryDoors doors = fake_doors();
+    doors.take = [this](const Origin& origin, std::string packet) {
+      const std::size_t space = packet.find(' ');
+      link.inbox.push({{engine_test::message(packet.substr(0, space), std::atof(packet.c_str() + space))}, origin});
+      link.wake_engine();
+    };
+    return doors;
+  }
+  WebClient client() const { return WebClient(server.port()); }
+  WebClient web_socket() const {
+    WebClient client(server.port());
+    EXPECT_EQ(client.upgrade().status, 101);
+    return client;
+  }
+};
+
+TEST(QueryServer, AnswersHttpOnOneConnectionAgainAndAgain) {
+  const Stage stage;
+  WebClient client = stage.client();
+  for (int i = 0; i < 3; i++) {
+    const Reply value = client.get("/scene/where?VALUE");
+    EXPECT_EQ(value.status, 200);
+    EXPECT_EQ(value.body, R"({"VALUE":[0,0,1]})");
+    EXPECT_TRUE(value.says("Content-Type: application/json"));
+    EXPECT_TRUE(value.says("X-Content-Type-Options: nosniff"));
+  }
+  EXPECT_EQ(json::parse(client.get("/").body)["CONTENTS"]["scene"]["CONTENTS"].size(), 4u);
+  EXPECT_EQ(client.get("/scene/wind?UNIT").status, 200);
+  EXPECT_EQ(client.get("/transport/play?VALUE").status, 204);
+  EXPECT_EQ(client.get("/nowhere").status, 404);
+  const Reply head = client.get("/?HOST_INFO", "", "HEAD");
+  EXPECT_EQ(head.status, 200);
+  EXPECT_TRUE(head.body.empty());
+  EXPECT_EQ(client.get("/", "", "DELETE").status, 405);
+  const Reply page = client.get("/", "Accept: text/html\r\n");
+  EXPECT_TRUE(page.says("Content-Security-Policy: default-src 'none'"));
+  const Reply last = client.get("/scene/wind?VALUE", "Connection: close\r\n");
+  EXPECT_EQ(last.status, 200);
+  EXPECT_TRUE(client.ends());
+}
+
+TEST(QueryServer, AWebSocketListensSetsAndIsNotEchoed) {
+  const Stage stage;
+  WebClient one = stage.client();
+  const Reply upgraded = one.upgrade();
+  EXPECT_EQ(upgraded.status, 101);
+  EXPECT_TRUE(upgraded.says("Sec-WebSocket-Accept: s3pPLMBiTxaQ9kYGzzhZRbK+xOo="));
+  WebClient two = stage.web_socket();
+  for (WebClient* client : {&one, &two}) {
+    client->listen("/scene/wind");
+    EXPECT_EQ(client->receive(2, "/scene/wind").payload, "/scene/wind f 0");
+  }
+  one.binary("/scene/wind 4");
+  EXPECT_EQ(two.receive(2, "").payload, "/scene/wind f 4");
+  // what the others hear after it comes after all that one could have heard of it
+  two.binary("/scene/wind 5");
+  EXPECT_EQ(one.receive(2, "").payload, "/scene/wind f 5");
+  EXPECT_EQ(two.until_pong("a"), std::vector<std::string>{});
+  EXPECT_EQ(one.until_pong("b"), std::vector<std::string>{});
+  // HTTP and the other's WebSocket say the same
+  EXPECT_EQ(stage.client().get("/scene/wind?VALUE").body, R"({"VALUE":[5]})");
+}
+
+// the engine ticks as long as this lives
+class Ticks {
+ public:
+  explicit Ticks(Engine& engine)
+      : thread_([this, &engine] {
+          while (!over_) engine.tick();
+        }) {}
+  ~Ticks() {
+    over_ = true;
+    thread_.join();
+  }
+  Ticks(const Ticks&) = delete;
+  Ticks& operator=(const Ticks&) = delete;
+
+ private:
+  std::atomic<bool> over_{false};
+  std::thread thread_;
+};
+
+TEST(QueryServer, TellsOfBodiesThatComeAndGo) {
+  Stage stage(false);
+  World& world = stage.engine.world();
+  WebClient client = stage.web_socket();
+  client.listen("/scene/wind");
+  {
+    const Ticks ticks(stage.engine);
+    EXPECT_EQ(client.receive(2, "/scene/wind").opcode, 2);
+  }
+  ASSERT_TRUE(world.copy_body(*world.find_body("free"), "late").ok());
+  {
+    const Ticks ticks(stage.engine);
+    EXPECT_EQ(client.receive(1, "PATH_").payload, R"({"COMMAND":"PATH_ADDED","DATA":"/physics/body/late"})");
+    client.listen("/physics/body/late/part/free/friction");
+    EXPECT_EQ(client.receive(2, "late").payload, "/physics/body/late/part/free/friction f 0.5");
+  }
+  world.remove_body(*world.find_body("late"));
+  const Ticks ticks(stage.engine);
+  EXPECT_EQ(client.receive(1, "PATH_").payload, R"({"COMMAND":"PATH_REMOVED","DATA":"/physics/body/late"})");
+}
+
+TEST(QueryServer, StrangersGetNothing) {
+  const Stage stage;
+  WebClient client = stage.client();
+  EXPECT_EQ(client.get("/scene", "Origin: http://evil.example\r\n").status, 403);
+  EXPECT_EQ(client.upgrade("Origin: http://evil.example\r\n").status, 403);
+  WebClient named = stage.client();
+  named.send("GET / HTTP/1.1\r\nHost: evil.example\r\n\r\n");
+  EXPECT_EQ(named.reply().status, 403);
+  WebClient own = stage.client();
+  EXPECT_EQ(own.upgrade("Origin: http://" + own.host() + "\r\n").status, 101);
+}
+
+TEST(QueryServer, GarbageEndsItsOwnConnectionOnly) {
+  const Stage stage;
+  WebClient good = stage.web_socket();
+  good.listen("/scene/wind");
+  EXPECT_EQ(good.receive(2, "/scene/wind").opcode, 2);
+  struct Bad {
+    std::string bytes;
+    int status;  // 0: nothing is said
+  };
+  const std::vector<Bad> bad = {
+      {"\r\n\r\n\r\n", 400},
+      {"nonsense\r\n\r\n", 400},
+      {std::string("\0\1\2\3\xff\r\n\r\n", 9), 400},
+      {"GET / HTTP/9.9\r\n\r\n", 400},
+      {"GET / HTTP/1.1\r\n\r\n", 400},
+      {"GET /scene HTTP/1.1\r\nHost: localhost\r\nContent-Length: 5\r\n\r\nhello", 413},
+      {"GET /scene HTTP/1.1\r\nHost: localhost\r\nContent-Length: x\r\n\r\n", 400},
+      {"GET /scene HTTP/1.1\r\nHost: localhost\r\nX: " + std::string(20000, 'x'), 431},
+      {"GET /" + std::string(20000, 'x'), 431},
+      {"GET / HTTP/1.1\r\nHost: localhost\r\nUpgrade: websocket\r\nConnection: Upgrade\r\n\r\n", 400},
+      {"#bundle", 0},
+  };
+  for (const Bad& b : bad) {
+    WebClient client = stage.client();
+    client.send(b.bytes);
+    if (b.status == 0) {
+      client.close();
+    } else {
+      EXPECT_EQ(client.reply().status, b.status) << b.bytes.substr(0, 60);
+    }
+  }
+  // frames that break the protocol end the conversation
+  const auto ends = [&](const std::function<void(const WebClient&)>& sin) {
+    WebClient client = stage.web_socket();
+    sin(client);
+    return client.ends();
+  };
+  EXPECT_TRUE(ends([](const WebClient& c) { c.frame(3, "no such opcode"); }));
+  EXPECT_TRUE(ends([](const WebClient& c) { c.send("\x81\x05hello"); })) << "not masked";
+  EXPECT_TRUE(ends([](const WebClient& c) { c.text("\xff\xfe is no UTF-8"); }));
+  EXPECT_TRUE(ends([](const WebClient& c) { c.frame(0, "the rest of nothing"); }));
+  EXPECT_TRUE(ends([](const WebClient& c) { c.binary(std::string(70000, 'x')); })) << "too large";
+  EXPECT_TRUE(ends([](const WebClient& c) { c.frame(9, std::string(200, 'x')); })) << "a ping is short";
+  // text that is no command, packets that are no OSC do not
+  WebClient odd = stage.web_socket();
+  for (const char* text : {"", "{", "[[[[", "{\"COMMAND\":7}"}) odd.text(text);
+  odd.frame(1, "{\"COMM", false);
+  odd.frame(0, "AND\":\"LISTEN\",\"DATA\":\"/scene/lively\"}");
+  EXPECT_EQ(odd.receive(2, "").payload, "/scene/lively T 1") << "in pieces, as is allowed";
+  good.binary("/scene/lively 0");
+  EXPECT_EQ(odd.receive(2, "").payload, "/scene/lively T 0");
+}
+
+// whether the server lets go of a client that reads nothing; it is told by what happens to what it sends
+bool is_dropped(const WebClient& client) {
+  const auto until = std::chrono::steady_clock::now() + std::chrono::milliseconds(kPatienceMs);
+  while (std::chrono::steady_clock::now() < until) {
+    if (!client.frame(9, "x")) return true;
+    pollfd p{client.fd(), POLLRDHUP, 0};
+    if (poll(&p, 1, 20) > 0) return true;
+  }
+  return false;
+}
+
+// one that takes nothing is dropped, and holds up nobody meanwhile
+TEST(QueryServer, ASlowClientIsDroppedTheOthersAreServed) {
+  const Stage stage;
+  WebClient slow(stage.server.port(), 4096);
+  ASSERT_EQ(slow.upgrade().status, 101);
+  slow.listen("//*");  // much of it moves all the time
+  WebClient good = stage.web_socket();
+  good.listen("/scene/wind");
+  EXPECT_EQ(good.receive(2, "/scene/wind").opcode, 2);
+  bool dropped = false;
+  std::thread waits([&] { dropped = is_dropped(slow); });
+  for (int i = 1; i <= 20; i++) {
+    WebClient other = stage.web_socket();
+    other.binary("/scene/wind " + std::to_string(0.25 * i));
+    EXPECT_EQ(good.receive(2, "").payload, "/scene/wind f " + number_text(0.25 * i));
+  }
+  waits.join();
+  EXPECT_TRUE(dropped);
+  good.binary("/scene/wind 9");
+  EXPECT_EQ(good.until_pong("still here"), std::vector<std::string>{});
+}
+
+TEST(QueryServer, AsManyAsThereAreSeats) {
+  const Stage stage;
+  std::vector<WebClient> idle;
+  for (int i = 0; i < 256; i++) idle.emplace_back(stage.server.port());
+  WebClient late = stage.client();
+  EXPECT_EQ(late.reply().status, 503) << "turned away, with a word";
+  EXPECT_TRUE(late.ends());
+  EXPECT_EQ(idle.back().get("/scene/wind?VALUE").status, 200) << "who is in is served";
+  idle.clear();
+  // seats are free again as soon as the server sees that
+  for (int tries = 0; tries < 100; tries++) {
+    WebClient next = stage.client();
+    const Reply reply = next.get("/scene/wind?VALUE");
+    if (reply.status == 200) return;
+    EXPECT_EQ(reply.status, 503);
+  }
+  ADD_FAILURE() << "nobody is let in any more";
+}
+
+TEST(QueryServer, AnEngineThatDoesNotTickHoldsUpNobody) {
+  const Stage stage(false);
+  WebClient client = stage.client();
+  EXPECT_EQ(client.get("/?HOST_INFO").status, 200);
+  EXPECT_EQ(client.get("/scene/wind?VALUE").status, 503);
+}
+
+TEST(QueryServer, ATakenPortIsSaidWithItsCure) {
+  const Stage stage;
+  EngineLink link;
+  QueryServer second(link, fake_doors());
+  const std::uint16_t port = stage.server.port();
+  const Result<void> taken = second.start({"127.0.0.1", port});
+  ASSERT_FALSE(taken.ok());
+  EXPECT_EQ(taken.error(), "OSCQuery can't listen on 127.0.0.1:" + std::to_string(port) +
+                               " (TCP): Address already in use; choose another with --query [ADDR:]PORT, or play "
+                               "without with --query off or --osc-optional");
+  EXPECT_EQ(second.port(), 0);
+  const Result<void> nowhere = second.start({"203.0.113.7", port});
+  ASSERT_FALSE(nowhere.ok());
+  EXPECT_NE(nowhere.error().find("203.0.113.7"), std::string::npos);
+}
+
+TEST(QueryServer, StopsWithClientsAndStartsAgain) {
+  EngineLink link;
+  QueryServer server(link, fake_doors());
+  for (int i = 0; i < 3; i++) {
+    ASSERT_TRUE(server.start({"127.0.0.1", 0}).ok());
+    WebClient idle(server.port());
+    WebClient listening(server.port());
+    EXPECT_EQ(listening.upgrade().status, 101);
+    listening.listen("/scene/wind");
+    listening.until_pong("x");
+    WebClient waiting(server.port());
+    waiting.send("GET /scene HTTP/1.1\r\nHost: localhost\r\n\r\n");
+    server.stop();
+    EXPECT_TRUE(listening.ends());
+    EXPECT_TRUE(idle.ends());
+    link.wake_query();
+  }
+}
+
+TEST(QueryServer, OpenToTheNetworkIsSaid) {
+  log_to_stderr(false);
+  EngineLink link;
+  QueryServer server(link, fake_doors());
+  const std::uint64_t before = log_count(LogLevel::warning);
+  ASSERT_TRUE(server.start({"0.0.0.0", 0}).ok());
+  EXPECT_EQ(log_count(LogLevel::warning), before + 1);
+  log_to_stderr(true);
+}
+
+TEST(QueryServer, OnlyThoseWhoAreAllowed) {
+  EngineLink link;
+  QueryDoors doors = fake_doors();
+  doors.allowed = [](std::uint32_t ip) { return ip != 0x7f000001; };
+  QueryServer server(link, doors);
+  ASSERT_TRUE(server.start({"127.0.0.1", 0}).ok());
+  WebClient client(server.port());
+  const Reply reply = client.reply();
+  EXPECT_EQ(reply.status, 403);
+  EXPECT_TRUE(client.ends());
+}
+
+}  // namespace
+}  // namespace limber::query_test

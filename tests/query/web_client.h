@@ -1,0 +1,204 @@
+// A client of HTTP and WebSocket on plain sockets, written from RFC 7230 and RFC 6455 without the code that is tested.
+#pragma once
+
+#include <arpa/inet.h>
+#include <netinet/in.h>
+#include <poll.h>
+#include <sys/socket.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+namespace limber::query_test {
+
+/// Nothing waits longer than this; only a failing test waits as long.
+inline constexpr int kPatienceMs = 20000;
+
+struct Reply {
+  int status = 0;  ///< 0: nothing came.
+  std::string head;
+  std::string body;
+
+  bool says(std::string_view line) const { return head.find(line) != std::string::npos; }
+};
+
+struct Frame {
+  int opcode = 0;  ///< 1 text, 2 binary, 8 the end, 10 an answer to a ping; 0: nothing came.
+  std::string payload;
+};
+
+class WebClient {
+ public:
+  explicit WebClient(std::uint16_t port, int receive_buffer = 0) : port_(port) {
+    fd_ = socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0);
+    if (receive_buffer > 0) setsockopt(fd_, SOL_SOCKET, SO_RCVBUF, &receive_buffer, sizeof receive_buffer);
+    sockaddr_in at{};
+    at.sin_family = AF_INET;
+    at.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+    at.sin_port = htons(port);
+    EXPECT_EQ(connect(fd_, reinterpret_cast<const sockaddr*>(&at), sizeof at), 0) << "port " << port;
+  }
+  ~WebClient() { close(); }
+  WebClient(WebClient&& other) noexcept
+      : fd_(std::exchange(other.fd_, -1)), port_(other.port_), got_(std::move(other.got_)) {}
+  WebClient(const WebClient&) = delete;
+  WebClient& operator=(const WebClient&) = delete;
+
+  void close() {
+    if (fd_ >= 0) ::close(std::exchange(fd_, -1));
+  }
+  int fd() const { return fd_; }
+  /// Its own port, by which the server knows it.
+  std::uint16_t own_port() const {
+    sockaddr_in at{};
+    socklen_t length = sizeof at;
+    getsockname(fd_, reinterpret_cast<sockaddr*>(&at), &length);
+    return ntohs(at.sin_port);
+  }
+  std::string host() const { return "127.0.0.1:" + std::to_string(port_); }
+
+  /// False: the server took no more of it.
+  bool send(std::string_view bytes) const {
+    while (!bytes.empty()) {
+      const ssize_t n = ::send(fd_, bytes.data(), bytes.size(), MSG_NOSIGNAL);
+      if (n <= 0) return false;
+      bytes.remove_prefix(static_cast<std::size_t>(n));
+    }
+    return true;
+  }
+
+  /// A request and its answer; `more` are further lines of the head, each with its end.
+  Reply get(std::string_view target, const std::string& more = "", std::string_view method = "GET") {
+    send(std::string(method) + " " + std::string(target) + " HTTP/1.1\r\nHost: " + host() + "\r\n" + more + "\r\n");
+    return reply(method == "HEAD");
+  }
+  Reply reply(bool head_only = false) {
+    Reply reply;
+    std::size_t end = 0;
+    while ((end = got_.find("\r\n\r\n")) == std::string::npos) {
+      if (!more()) return reply;
+    }
+    reply.head = got_.substr(0, end + 2);
+    got_.erase(0, end + 4);
+    reply.status = std::atoi(reply.head.c_str() + std::string_view("HTTP/1.1 ").size());
+    const std::size_t length = reply.head.find("Content-Length: ");
+    const std::size_t size = length == std::string::npos || head_only ? 0 : std::stoul(reply.head.substr(length + 16));
+    while (got_.size() < size) {
+      if (!more()) break;
+    }
+    reply.body = got_.substr(0, size);
+    got_.erase(0, size);
+    return reply;
+  }
+
+  /// Becomes a WebSocket; the answer, whose status is then 101. The key and what it must be answered with are RFC
+  /// 6455's own example.
+  Reply upgrade(const std::string& more = "") {
+    return get("/",
+               "Upgrade: websocket\r\nConnection: Upgrade\r\nSec-WebSocket-Version: 13\r\n"
+               "Sec-WebSocket-Key: dGhlIHNhbXBsZSBub25jZQ==\r\n" +
+                   more);
+  }
+  /// A frame as a client sends it, masked.
+  bool frame(int opcode, std::string_view payload, bool last = true) const {
+    std::string bytes(1, static_cast<char>((last ? 0x80 : 0) | opcode));
+    if (payload.size() < 126) {
+      bytes += static_cast<char>(0x80 | payload.size());
+    } else if (payload.size() < 65536) {
+      bytes += static_cast<char>(0x80 | 126);
+      for (const int shift : {8, 0}) bytes += static_cast<char>(payload.size() >> shift & 255u);
+    } else {
+      bytes += static_cast<char>(0x80 | 127);
+      for (int shift = 56; shift >= 0; shift -= 8) bytes += static_cast<char>(payload.size() >> shift & 255u);
+    }
+    const std::string mask = "\x12\x34\x56\x78";
+    bytes += mask;
+    for (std::size_t i = 0; i < payload.size(); i++) bytes += static_cast<char>(payload[i] ^ mask[i % 4]);
+    return send(bytes);
+  }
+  bool text(std::string_view payload) const { return frame(1, payload); }
+  bool binary(std::string_view payload) const { return frame(2, payload); }
+  bool listen(std::string_view path) const { return command("LISTEN", path); }
+  bool ignore(std::string_view path) const { return command("IGNORE", path); }
+  bool command(std::string_view word, std::string_view path) const {
+    return text(R"({"COMMAND":")" + std::string(word) + R"(","DATA":")" + std::string(path) + "\"}");
+  }
+
+  /// The next frame; its opcode is 0 when none came within `ms`, or the connection ended.
+  Frame receive(int ms = kPatienceMs) {
+    Frame frame;
+    while (!take_frame(frame)) {
+      if (!more(ms)) return {};
+    }
+    return frame;
+  }
+  /// The next frame of that opcode that holds `part`; others are passed over.
+  Frame receive(int opcode, std::string_view part) {
+    for (;;) {
+      Frame frame = receive();
+      if (frame.opcode == 0 || (frame.opcode == opcode && frame.payload.find(part) != std::string::npos)) return frame;
+    }
+  }
+  /// What binary frames come before an answer to this ping does: everything that was on its way.
+  std::vector<std::string> until_pong(const std::string& word) {
+    frame(9, word);
+    std::vector<std::string> values;
+    for (;;) {
+      Frame got = receive();
+      if (got.opcode == 0) ADD_FAILURE() << "the ping is not answered";
+      if (got.opcode == 0 || (got.opcode == 10 && got.payload == word)) return values;
+      if (got.opcode == 2) values.push_back(std::move(got.payload));
+    }
+  }
+  /// Whether the server ends the connection.
+  bool ends() {
+    while (more()) got_.clear();
+    return ended_;
+  }
+
+ private:
+  // reads some bytes; false: none come any more
+  bool more(int ms = kPatienceMs) {
+    pollfd p{fd_, POLLIN, 0};
+    if (poll(&p, 1, ms) <= 0) return false;
+    char buffer[65536];
+    const ssize_t n = recv(fd_, buffer, sizeof buffer, 0);
+    ended_ = n <= 0;
+    if (n > 0) got_.append(buffer, static_cast<std::size_t>(n));
+    return n > 0;
+  }
+
+  bool take_frame(Frame& frame) {
+    const auto byte = [this](std::size_t i) { return static_cast<unsigned char>(got_[i]); };
+    if (got_.size() < 2) return false;
+    std::size_t head = 2;
+    std::size_t size = byte(1) & 127u;
+    EXPECT_EQ(byte(1) & 128u, 0u) << "a server's frame is not masked";
+    const std::size_t longer = size == 126 ? 2 : size == 127 ? 8 : 0;
+    if (got_.size() < head + longer) return false;
+    if (longer > 0) size = 0;
+    for (std::size_t i = 0; i < longer; i++) size = size << 8 | byte(head + i);
+    head += longer;
+    if (got_.size() < head + size) return false;
+    frame.opcode = byte(0) & 15;
+    frame.payload = got_.substr(head, size);
+    got_.erase(0, head + size);
+    return true;
+  }
+
+  int fd_ = -1;
+  std::uint16_t port_ = 0;
+  std::string got_;
+  bool ended_ = false;
+};
+
+}  // namespace limber::query_test

@@ -1,0 +1,61 @@
+// Lua's `visuals`: the background, the camera in its two ways, materials by a shape's name.
+#include <gtest/gtest.h>
+
+#include "params/catalog.h"
+#include "stage.h"
+
+namespace limber {
+namespace {
+
+struct Picture : testing::Test {
+  Stage stage;
+  std::vector<double> read(const std::string& path) {
+    const Result<Place> place = find_place(stage.store, path);
+    EXPECT_TRUE(place.ok()) << path;
+    std::vector<double> out(place->row->width);
+    stage.store.get(place->node, *place->row, out.data());
+    return out;
+  }
+};
+
+TEST_F(Picture, IsSetFromAScene) {
+  const std::string fault = stage.run(R"(
+    local ball = sim:add_sphere_shape("ball", 0.1)
+    visuals.background = rgb(0, 0, 0.5)
+    visuals:shape("ball").transparency = 0.25
+    ball.diffuse_color = rgb(0, 1, 0)
+    visuals.camera.projection = { 65.9, 0, 0.5, 150 }
+    visuals.camera:look_at(vec3(3, -4, 2), vec3(0, 0, 2))
+  )");
+  ASSERT_EQ(fault, "");
+  EXPECT_EQ(read("/visuals/background"), (std::vector<double>{4.0 / 6, 1, 0.5}));
+  EXPECT_EQ(read("/visuals/shape/ball/transparency"), std::vector<double>{0.25});
+  EXPECT_EQ(read("/visuals/shape/ball/diffuse_color"), (std::vector<double>{2.0 / 6, 1, 1}));
+  EXPECT_EQ(read("/visuals/camera/fovy"), std::vector<double>{65.9});
+  EXPECT_EQ(read("/visuals/camera/far"), std::vector<double>{150});
+  const std::vector<double> eye = read("/visuals/camera/eye");
+  const std::vector<double> target = read("/visuals/camera/target");
+  const double wanted_eye[] = {3, -4, 2};
+  const double wanted_target[] = {0, 0, 2};
+  for (std::size_t i = 0; i < 3; i++) {
+    EXPECT_NEAR(eye[i], wanted_eye[i], 1e-9);
+    EXPECT_NEAR(target[i], wanted_target[i], 1e-9);
+  }
+}
+
+TEST_F(Picture, IsReadInAScene) {
+  EXPECT_EQ(value_of("visuals.camera.projection[1], visuals.camera.aspect"), "40\t0");
+  EXPECT_EQ(value_of("visuals.camera == visuals.camera, visuals.alive, tostring(visuals.camera)"),
+            "true\ttrue\tvisuals.camera");
+}
+
+TEST_F(Picture, WhatIsWrongIsSaid) {
+  EXPECT_NE(error_of("visuals.camera.projection = { 40, 1, 10, 5 }").find("must be further away"), std::string::npos);
+  EXPECT_NE(error_of("visuals.camera.projection = 40").find("takes { fovy, aspect, near, far }"), std::string::npos);
+  EXPECT_NE(error_of("visuals.camera.fov = 40").find("did you mean 'fovy'?"), std::string::npos);
+  EXPECT_NE(error_of("visuals:shape('ball')").find("there is no shape 'ball'"), std::string::npos);
+  EXPECT_NE(error_of("visuals.camera.look_at(vec3(), vec3())").find("colon"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace limber

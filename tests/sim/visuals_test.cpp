@@ -1,0 +1,123 @@
+// The camera's two ways of telling where it is, the shapes' materials, and those of a robot's file.
+#include "sim/visuals.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "base/color.h"
+#include "model/urdf_import.h"
+#include "sim/world.h"
+
+namespace limber {
+namespace {
+
+struct Picture : testing::Test {
+  Store store;
+  World world{store};
+  NodeId camera = world.visuals().camera().id();
+
+  std::vector<double> get(NodeId id, const char* name) const {
+    const Row& row = store.table(id).at(name);
+    std::vector<double> out(row.width);
+    store.get(id, row, out.data());
+    return out;
+  }
+  void set(NodeId id, const char* name, std::vector<double> values) {
+    ASSERT_TRUE(store.set(id, name, values).ok()) << name;
+  }
+  void expect_near(const std::vector<double>& is, const std::vector<double>& wanted) const {
+    ASSERT_EQ(is.size(), wanted.size());
+    for (std::size_t i = 0; i < is.size(); i++) EXPECT_NEAR(is[i], wanted[i], 1e-9) << i;
+  }
+};
+
+TEST_F(Picture, TheSeedsCameraIsWhereItsMatrixSays) {
+  // without rotation the eye looks down: the view is a shift alone, and the origin 5 m in front of it
+  set(camera, "position", {0, 0, -5});
+  set(camera, "rotation", {0, 0, 0});
+  set(camera, "distance", {5});
+  expect_near(get(camera, "eye"), {0, 0, 5});
+  expect_near(get(camera, "target"), {0, 0, 0});
+  // turned by −90° about x, the view's −z is the world's y: from the south, 4 m away and 1 m up
+  set(camera, "position", {0, -1, -4});
+  set(camera, "rotation", {-90, 0, 0});
+  expect_near(get(camera, "eye"), {0, -4, 1});
+  expect_near(get(camera, "target"), {0, 1, 1});
+  // the seed's own example, by hand: Rz(−24°) and then Rx(−80°), the eye at −Rᵀ·(0, −4, −3.9)
+  set(camera, "position", {0, -4, -3.9});
+  set(camera, "rotation", {-80, 0, -24});
+  const double x = -80 * kPi / 180;
+  const double z = -24 * kPi / 180;
+  const double y1 = 4 * std::cos(x) + 3.9 * std::sin(x);
+  const double z1 = -4 * std::sin(x) + 3.9 * std::cos(x);
+  expect_near(get(camera, "eye"), {y1 * std::sin(z), y1 * std::cos(z), z1});
+}
+
+TEST_F(Picture, EyeAndTargetAreViewsOfTheSameCamera) {
+  set(camera, "eye", {3, -4, 2});
+  set(camera, "target", {0, 0, 2});
+  // level, 5 m away; the heading is that of (−3, 4): 90° − atan2(4, −3)
+  expect_near(get(camera, "rotation"), {-90, 0, 90 - std::atan2(4, -3) * 180 / kPi});
+  expect_near(get(camera, "distance"), {5});
+  expect_near(get(camera, "eye"), {3, -4, 2});
+  expect_near(get(camera, "target"), {0, 0, 2});
+  // one of the two moves, the other stays
+  set(camera, "eye", {0, 0, 9});
+  expect_near(get(camera, "target"), {0, 0, 2});
+  expect_near(get(camera, "rotation"), {0, 0, 0});
+  set(camera, "target", {0, 0, 12});
+  expect_near(get(camera, "eye"), {0, 0, 9});
+  expect_near(get(camera, "distance"), {3});
+  // a look at itself turns nothing
+  set(camera, "target", {0, 0, 9});
+  expect_near(get(camera, "target"), {0, 0, 12});
+}
+
+TEST_F(Picture, ColoursAreHueSaturationBrightness) {
+  EXPECT_EQ(hsb_of({0, 0, 0}), Vec3(0, 0, 0));
+  EXPECT_EQ(hsb_of({0.5, 0.5, 0.5}), Vec3(0, 0, 0.5));
+  EXPECT_EQ(hsb_of({1, 0, 0}), Vec3(0, 1, 1));
+  EXPECT_EQ(hsb_of({0, 1, 0}), Vec3(2.0 / 6, 1, 1));
+  EXPECT_EQ(hsb_of({0, 0, 0.5}), Vec3(4.0 / 6, 1, 0.5));
+  EXPECT_NEAR(hsb_of({1, 0, 0.5}).x, 5.5 / 6, 1e-12);
+}
+
+TEST_F(Picture, ARobotsShapesHaveTheFilesColours) {
+  const char* const urdf = R"(<robot name="rob"><link name="a">
+    <inertial><mass value="1"/><inertia ixx="1" iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/></inertial>
+    <visual><geometry><sphere radius="0.2"/></geometry><material name="m"><color rgba="0 1 0 0.75"/></material></visual>
+    <visual><geometry><box size="1 1 1"/></geometry></visual>
+  </link></robot>)";
+  MeshLibrary meshes;
+  const auto model = *import_urdf_text(urdf, "rob.urdf", {}, meshes);
+  ASSERT_NE(model, nullptr);
+  ASSERT_TRUE(world.add_body(model, "one", {}).ok());
+  ASSERT_TRUE(world.add_body(model, "two", {}).ok());
+  ASSERT_EQ(world.shapes().size(), 2u) << "both bodies share them";
+  const Shape* const green = world.find_shape("rob.a");
+  const Shape* const plain = world.find_shape("rob.a.2");
+  ASSERT_TRUE(green != nullptr && plain != nullptr);
+  EXPECT_EQ(green->model().kind, ShapeKind::sphere);
+  EXPECT_EQ(get(green->id(), "diffuse_color"), (std::vector<double>{2.0 / 6, 1, 1}));
+  EXPECT_EQ(get(green->id(), "transparency"), std::vector<double>{0.25});
+  EXPECT_EQ(store.said(green->id()), 0u) << "a file's colour is no value that a script has said";
+  EXPECT_EQ(get(plain->id(), "diffuse_color"), (std::vector<double>{0, 0, 1}));
+  // what a hand has set stays when another body of the model comes
+  set(green->id(), "diffuse_color", {0.5, 1, 1});
+  ASSERT_TRUE(world.add_body(model, "three", {}).ok());
+  EXPECT_EQ(get(green->id(), "diffuse_color"), (std::vector<double>{0.5, 1, 1}));
+}
+
+TEST_F(Picture, ClearingTheWorldGivesTheDefaultsBack) {
+  const std::vector<double> eye = get(camera, "eye");
+  set(camera, "eye", {1, 2, 3});
+  set(world.visuals().id(), "background", {0.1, 1, 1});
+  world.clear();
+  expect_near(get(camera, "eye"), eye);
+  const Row& background = Visuals::table().at("background");
+  EXPECT_EQ(get(world.visuals().id(), "background")[1], background.initial[1]);
+}
+
+}  // namespace
+}  // namespace limber
