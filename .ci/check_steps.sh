@@ -40,16 +40,35 @@ build() {
   fi
 }
 
-# run_tests FOLDER ROOM...: runs test_ROOM of that build and counts its tests; a skipped one counts as failed
+# rooms whose tests take longest: they begin first, so that no core waits for one of them at the end
+slow_rooms="script scenes sim"
+
+# begin_tests FOLDER ROOM...: runs test_ROOM of that build, one a core; each leaves a log, its exit code and its seconds
+begin_tests() {
+  local folder=$1 room first=()
+  shift
+  for room in $slow_rooms; do case " $* " in *" $room "*) first+=("$room") ;; esac done
+  for room in "$@"; do case " $slow_rooms " in *" $room "*) ;; *) first+=("$room") ;; esac done
+  export -f fixed_addresses
+  printf '%s\n' "${first[@]}" | test_folder=$folder test_seconds=${test_seconds:-900} xargs -P "$(jobs)" -I ROOM bash -c '
+    log=build/check/${test_folder//\//_}_test_ROOM.log
+    begin=$SECONDS
+    fixed_addresses timeout -k 10 "$test_seconds" "$test_folder/test_ROOM" --gtest_color=no >"$log" 2>&1
+    echo "$? $((SECONDS - begin))" >"${log%.log}.end"'
+}
+
+# run_tests FOLDER ROOM...: runs those tests and counts them; a skipped one counts as failed
 run_tests() {
-  local folder=$1 room log ok bad rc begin
+  local folder=$1 room log ok bad rc seconds built=()
   shift
   for room in "$@"; do
-    [ -x "$folder/test_$room" ] || { fail "$folder/test_$room was not built"; continue; }
+    if [ -x "$folder/test_$room" ]; then built+=("$room"); else fail "$folder/test_$room was not built"; fi
+  done
+  [ ${#built[@]} != 0 ] || return
+  begin_tests "$folder" "${built[@]}"
+  for room in "${built[@]}"; do
     log=build/check/${folder//\//_}_test_$room.log
-    begin=$SECONDS
-    fixed_addresses timeout -k 10 "${test_seconds:-900}" "$folder/test_$room" --gtest_color=no >"$log" 2>&1
-    rc=$?
+    read -r rc seconds <"${log%.log}.end" || { fail "$folder/test_$room did not run"; continue; }
     ok=$(grep -c '\[       OK \]' "$log")
     bad=$(grep -cE '\[  (FAILED  |SKIPPED )\] .* \([0-9]+ ms\)$' "$log")
     pass "$ok"
@@ -57,13 +76,13 @@ run_tests() {
     if [ "$bad" != 0 ]; then
       grep -E '\[  (FAILED  |SKIPPED )\] .* \([0-9]+ ms\)$' "$log" | sed 's/^/    /'
       grep -B1 -A8 ': Failure$' "$log" | head -30 | sed 's/^/    /'
-    elif [ $rc != 0 ]; then
+    elif [ "$rc" != 0 ]; then
       # it crashed, hung, or a sanitizer spoke after the last test
       fail "$folder/test_$room ended with code $rc (124 and 137: too slow)" "$log"
     elif [ "$ok" = 0 ]; then
       fail "$folder/test_$room holds no test"
     fi
-    say "$folder/test_$room: $ok passed, $((bad > 0 ? bad : rc != 0)) failed, $((SECONDS - begin)) s"
+    say "$folder/test_$room: $ok passed, $((bad > 0 ? bad : rc != 0)) failed, $seconds s"
   done
 }
 

@@ -110,8 +110,7 @@ std::vector<RunningProgram> running_programs() {
 Result<ConsoleLink> choose_program(int pid, ConsoleLine& hello) {
   std::vector<RunningProgram> programs = running_programs();
   if (programs.empty()) {
-    return Error{
-        "no limber of yours is running; start one with `limber play`, without --fast, and call `limber console` then"};
+    return Error{"no limber of yours is running; start one with `limber play`, without --fast, first"};
   }
   if (pid == 0 && programs.size() > 1)
     return Error{fmt::format("{} of your programs are running; choose one:{}", programs.size(), list_text(programs))};

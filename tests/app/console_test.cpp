@@ -73,8 +73,7 @@ TEST(Console, WithoutAShowThereIsNobodyToTalkTo) {
   const Ran ran = show.console({"-e", "1"});
   EXPECT_EQ(ran.code, 1);
   EXPECT_EQ(ran.err,
-            "limber: console: no limber of yours is running; start one with `limber play`, without --fast, and call "
-            "`limber console` then\n");
+            "limber: console: no limber of yours is running; start one with `limber play`, without --fast, first\n");
 }
 
 TEST(Console, AKilledShowsSocketIsRemovedByTheNext) {

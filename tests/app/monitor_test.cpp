@@ -122,7 +122,8 @@ TEST(Monitor, SaysWhatIsWrong) {
   const Ran nobody =
       Running(limber({"monitor"}, {"env", "XDG_RUNTIME_DIR=" + empty.path(), "TMPDIR=" + empty.path()})).finish();
   EXPECT_EQ(nobody.code, 1);
-  EXPECT_NE(nobody.err.find("limber: monitor: "), std::string::npos) << nobody.err;
+  EXPECT_NE(nobody.err.find("limber: monitor: no limber of yours is running; start one"), std::string::npos)
+      << nobody.err;
   const Stage stage;
   const Ran wrong = Running(stage.monitor({"wind"})).finish();
   EXPECT_EQ(wrong.code, 1);

@@ -129,6 +129,12 @@ Trajectory played(const std::string& type, const std::string& opts, bool group) 
 
 class Twins : public ::testing::TestWithParam<Twin> {};
 
+// all sets are compared where that is quick; under the address sanitizer each type moves by its first
+#ifndef __has_feature  // clang's
+#define __has_feature(name) 0
+#endif
+constexpr std::size_t kSets = __has_feature(address_sanitizer) ? 1 : 100;
+
 // how far apart the twins come, and how far they come from where they began
 std::pair<double, double> deviation(const Trajectory& a, const Trajectory& b) {
   double farthest = 0, way = 0;
@@ -143,7 +149,8 @@ std::pair<double, double> deviation(const Trajectory& a, const Trajectory& b) {
 TEST_P(Twins, MoveAlike) {
   const Twin& twin = GetParam();
   const Trajectory alone = played("force", "amp = 0", false);
-  for (const char* opts : twin.sets) {
+  for (std::size_t set = 0; set < std::min(twin.sets.size(), kSets); set++) {
+    const char* opts = twin.sets[set];
     SCOPED_TRACE(opts);
     const Trajectory built_in = played(twin.type, opts, twin.group);
     const Trajectory lua = played(std::string("lua_") + twin.type, opts, twin.group);
@@ -151,7 +158,7 @@ TEST_P(Twins, MoveAlike) {
     const auto [apart, way] = deviation(built_in, lua);
     EXPECT_LT(apart, 1e-4) << "of " << way << " m";
     // the first set shows what the type does
-    if (opts == twin.sets.front()) {
+    if (set == 0) {
       EXPECT_GT(deviation(built_in, alone).first, 0.05);
     }
   }

@@ -6,7 +6,8 @@
 #include <algorithm>
 #include <functional>
 #include <random>
-#include <set>
+#include <utility>
+#include <vector>
 
 namespace limber {
 namespace {
@@ -101,19 +102,20 @@ TEST(PointGrid, EachPairOnce) {
       PointGrid grid;
       grid.build(cloud, most);
       for (const float least : {0.0f, most / 2}) {
-        std::multiset<std::pair<std::uint32_t, std::uint32_t>> wanted, found;
+        std::vector<std::pair<std::uint32_t, std::uint32_t>> wanted, found;
         for (std::uint32_t i = 0; i < cloud.size(); i++) {
           for (std::uint32_t j = i + 1; j < cloud.size(); j++) {
             if (within(cloud, j, {cloud.x[i], cloud.y[i], cloud.z[i], cloud.body[i]}, least, most))
-              wanted.insert({i, j});
+              wanted.emplace_back(i, j);
           }
         }
         for (std::uint32_t place = 0; place < cloud.size(); place++) {
           const std::uint32_t count = grid.near_once(place, least, most, out.data());
           for (std::uint32_t k = 0; k < count; k++) {
-            found.insert(std::minmax(grid.order()[place], grid.order()[out[k]]));
+            found.emplace_back(std::minmax(grid.order()[place], grid.order()[out[k]]));
           }
         }
+        std::ranges::sort(found);
         ASSERT_EQ(found, wanted) << spread.name << " within " << least << " .. " << most;
       }
     }
