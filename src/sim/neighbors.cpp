@@ -65,12 +65,17 @@ NeighborSet::NeighborSet(World& world, std::vector<Part*> parts) : world_(world)
 
 void NeighborSet::number_parts() {
   centers_.resize(parts_.size());
-  std::fill(numbers_.begin(), numbers_.end(), kNoPlace);
+  std::fill(numbers_.begin(), numbers_.end(), -1);
   for (std::size_t i = 0; i < ids_.size(); i++) {
     const auto slot = static_cast<std::size_t>(ids_[i].slot);
-    if (slot >= numbers_.size()) numbers_.resize(slot + 1, kNoPlace);
-    numbers_[slot] = static_cast<std::uint32_t>(i);
+    if (slot >= numbers_.size()) numbers_.resize(slot + 1, -1);
+    numbers_[slot] = static_cast<std::int32_t>(i);
   }
+}
+
+std::uint32_t NeighborSet::number_of(const Part& part) const {
+  const std::uint32_t slot = part.id().slot;
+  return slot < numbers_.size() ? static_cast<std::uint32_t>(numbers_[slot]) : kNoPlace;
 }
 
 bool NeighborSet::holds(std::span<Part* const> parts) const {
@@ -233,8 +238,7 @@ const NeighborMeans& NeighborSet::means_near(const Part& of, double least, doubl
   gather();
   least = std::max(least, 0.0);
   most = std::min(most, kFarthest);
-  const std::uint32_t slot = of.id().slot;
-  const std::uint32_t own = slot < numbers_.size() ? numbers_[slot] : kNoPlace;
+  const std::uint32_t own = number_of(of);
   if (own == kNoPlace) {
     alone_ = {};
     if (!(most > least) || cloud_.size() == 0) return alone_;
@@ -436,8 +440,7 @@ void NeighborSet::near(const Part& of, double radius, std::vector<Neighbor>& out
   if (cloud_.size() == 0 || !(radius >= 0)) return out.clear();
   const auto reach = static_cast<float>(std::min(radius, kFarthest));
   Grid& grid = grid_for(reach);
-  const std::uint32_t slot = of.id().slot;
-  const std::uint32_t own = slot < numbers_.size() ? numbers_[slot] : kNoPlace;
+  const std::uint32_t own = number_of(of);
   std::optional<std::span<const std::uint32_t>> near;
   const bool known = own != kNoPlace && world_.store().live()[spots_[own].enabled] != 0;
   if (known) near = lists_.of(own, reach, {cloud_, grid.grid, indices_, parts_.size()});
