@@ -33,6 +33,12 @@ end
 
 local function items_of(list) return lists[list.number_] or fail("this list is out of date: take it from self anew") end
 
+local function next_item(list, i)
+  i = i + 1
+  local item = lists[list.number_][i]
+  if item then return i, item end
+end
+
 ffi.metatype(S, {
   __index = function(list, key)
     if type(key) == "number" then return items_of(list)[key] end
@@ -48,7 +54,7 @@ ffi.metatype(S, {
 
 local ipairs_of_things = P.ipairs
 function P.ipairs(t)
-  if istype(S, t) then t = items_of(t) end
+  if istype(S, t) then return next_item, t, 0 end
   local f, s, i = ipairs_of_things(t)
   return f, s, i
 end
