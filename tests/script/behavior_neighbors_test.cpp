@@ -190,7 +190,7 @@ if self.body.name == 'b3' then self:neighbor_means(first, 0, 2) end
 )"));
   EXPECT_EQ(stage.play(row_of_balls(3), 1), "");
   EXPECT_EQ(first_line(stage.world.find_body("b3")->find_behavior("swarm")->error()),
-            "behaviors_lua/test.lua:6: part 'b1/ball' no longer exists (thing.alive tells)");
+            "behaviors_lua/test.lua:7: part 'b1/ball' no longer exists (thing.alive tells)");
   EXPECT_EQ(stage.world.find_body("b2")->find_behavior("swarm")->error(), "");
 }
 

@@ -293,6 +293,7 @@ function P.finish(class)
   ffi.metatype(ctype, {
     __index = function(h, key)
       local get = members[key]
+      if get == nil then get = getters[key] end  -- one that came later
       if get then
         local value = get(h)  -- no tail call: a getter returns to a Lua function, so that it can be compiled
         return value

@@ -39,6 +39,17 @@ local function next_item(list, i)
   if item then return i, item end
 end
 
+-- a long list has a walk of its own, which finds its items without looking for them at each step, and which no script
+-- can change
+local walks = {}
+local function walk_of(items)
+  return function(_, i)
+    i = i + 1
+    local item = items[i]
+    if item then return i, item end
+  end
+end
+
 ffi.metatype(S, {
   __index = function(list, key)
     if type(key) == "number" then return items_of(list)[key] end
@@ -54,14 +65,14 @@ ffi.metatype(S, {
 
 local ipairs_of_things = P.ipairs
 function P.ipairs(t)
-  if istype(S, t) then return next_item, t, 0 end
+  if istype(S, t) then return walks[t.number_] or next_item, t, 0 end
   local f, s, i = ipairs_of_things(t)
   return f, s, i
 end
 
 local function keep_list(name, items)
   local number = #free > 0 and table.remove(free) or #lists + 1
-  lists[number], list_names[number] = items, name
+  lists[number], list_names[number], walks[number] = items, name, #items > 1 and walk_of(items)
   return (S(number))
 end
 
