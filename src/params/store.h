@@ -127,6 +127,8 @@ class Store {
 
   /// From here on the log keeps what each value was, until end_undo() or take_back(). Allocates only while it grows.
   void begin_undo();
+  /// Whether the log is empty.
+  bool undo_untouched() const { return undo_.values.empty(); }
   /// The call ended well: what it wrote stays.
   void end_undo();
   /// The call failed: every value, and whether its effect waits, is as it was when begin_undo() was called.

@@ -130,23 +130,27 @@ BehaviorFault BehaviorScripts::step(std::int32_t number, double dt) {
   return inside([&] { return vm_->step_behavior(number, dt); });
 }
 
-std::size_t BehaviorScripts::step_all(std::span<Behavior* const> all, double dt) {
-  row_ = {all, 0, 0};
-  BehaviorFault fault = inside([&] { return vm_->step_behaviors(dt, row_.stepping); });
-  if (fault.text.empty()) return row_.next;
+void BehaviorScripts::step_all(StepRow& row, double dt) {
+  StepRow* const outer = std::exchange(row_, &row);
+  BehaviorFault fault = inside([&] { return vm_->step_behaviors(dt, row.stepping); });
+  row_ = outer;
+  if (fault.text.empty()) return;
   // without a Vm nobody came to step
-  if (row_.next == 0) row_.next = 1;
-  static_cast<LuaBehavior&>(*all[row_.next - 1]).fail(std::move(fault));
-  return row_.next;
+  if (row.next == 0) row.next = 1;
+  row.changed = true;
+  static_cast<LuaBehavior&>(*row.all[row.next - 1]).fail(std::move(fault));
 }
 
 std::int32_t BehaviorScripts::next_step() {
-  if (row_.stepping != 0 && !vm_->guard().next_call()) return 0;
-  row_.stepping = 0;
-  while (row_.next < row_.all.size() && !row_.all[row_.next]->runs()) row_.next++;
-  if (row_.next == row_.all.size()) return 0;
-  row_.stepping = static_cast<const LuaBehavior&>(*row_.all[row_.next++]).number();
-  return row_.stepping;
+  StepRow& row = *row_;
+  if (row.stepping != 0 && !vm_->guard().next_call(row.changed)) return 0;
+  row.stepping = 0;
+  if (row.changed) {
+    while (row.next < row.all.size() && !row.all[row.next]->runs()) row.next++;
+  }
+  if (row.next == row.all.size()) return 0;
+  row.stepping = row.numbers[row.next++];
+  return row.stepping;
 }
 
 BehaviorFault BehaviorScripts::restore(std::int32_t number, std::string_view state, bool migrate) {

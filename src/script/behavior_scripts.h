@@ -58,9 +58,17 @@ class BehaviorScripts : public std::enable_shared_from_this<BehaviorScripts> {
   std::int32_t make(const Behavior& behavior, std::int32_t file);
   BehaviorFault start(std::int32_t number);
   BehaviorFault step(std::int32_t number, double dt);
-  /// Steps instances of a file one after the other in one call of the Vm, each guarded by itself: one that fails is
-  /// suspended, and is the last. Returns how many it has come to, at least one.
-  std::size_t step_all(std::span<Behavior* const> all, double dt);
+  /// Instances of a file that are stepped one after the other.
+  struct StepRow {
+    std::span<Behavior* const> all;
+    std::span<const std::int32_t> numbers;  ///< In the Vm.
+    bool changed = false;                   ///< Some may have been switched off since it was known that all run.
+    std::size_t next = 0;                   ///< Which comes next.
+    std::int32_t stepping = 0;              ///< Which steps now, by its number; 0: none.
+  };
+  /// Steps them in one call of the Vm, each guarded by itself: one that fails is suspended, and is the last. It comes
+  /// to one at least.
+  void step_all(StepRow& row, double dt);
   /// In the middle of step_all: the step before went well; the number of the next instance, 0: there is none.
   std::int32_t next_step();
   /// Gives the instance the state of an older one; `migrate`: through the function of that name, if the file has it.
@@ -82,12 +90,6 @@ class BehaviorScripts : public std::enable_shared_from_this<BehaviorScripts> {
     std::int32_t kept_in = 0;
   };
   void keep_generator(std::int32_t file);
-  /// Steps in one call: which comes next, which steps now.
-  struct StepRow {
-    std::span<Behavior* const> all;
-    std::size_t next = 0;
-    std::int32_t stepping = 0;  // its number in the Vm; 0: none
-  };
   template <class Call>
   BehaviorFault inside(Call call);
 
@@ -96,7 +98,7 @@ class BehaviorScripts : public std::enable_shared_from_this<BehaviorScripts> {
   std::vector<BehaviorFile> files_;
   std::vector<FileGenerator> generators_;  // one a file
   std::vector<std::int32_t> dropped_;      // not told to the Vm yet
-  StepRow row_;
+  StepRow* row_ = nullptr;                 // of the call that runs
 };
 
 }  // namespace limber

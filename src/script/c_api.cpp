@@ -6,6 +6,7 @@
 #include "params/store.h"
 #include "script/match.h"
 #include "sim/neighbors.h"
+#include "sim/part_solids.h"
 
 namespace limber {
 
@@ -24,6 +25,10 @@ static_assert(offsetof(LimberView, kept) == offsetof(StoreView, kept));
 static_assert(offsetof(LimberView, live) == offsetof(StoreView, live));
 static_assert(offsetof(LimberView, slot_count) == offsetof(StoreView, slot_count));
 
+static_assert(sizeof(LimberSolid) == sizeof(PartSolid));
+static_assert(offsetof(LimberSolid, inertia_x) == offsetof(PartSolid, unit_inertia));
+static_assert(sizeof(LimberSolids) == sizeof(PartSolids::View));
+static_assert(offsetof(LimberSolids, places) == offsetof(PartSolids::View, places));
 static_assert(sizeof(LimberNeighbor) == sizeof(Neighbor));
 static_assert(offsetof(LimberNeighbor, index) == offsetof(Neighbor, index));
 static_assert(offsetof(LimberNeighbor, x) == offsetof(Neighbor, offset));

@@ -103,6 +103,8 @@ std::int32_t neighbors(void* c, std::int32_t slot, std::int32_t generation, std:
   return kOk;
 }
 
+const LimberMeansOfAll* means_of_all(void* c) { return &context_of(c).means_of_all; }
+
 const LimberMeans* neighbor_means(void* c, std::int32_t slot, std::int32_t generation, std::int32_t part_slot,
                                   std::int32_t part_generation, double least, double most, std::int32_t want) {
   ScriptContext& context = context_of(c);
@@ -110,7 +112,19 @@ const LimberMeans* neighbor_means(void* c, std::int32_t slot, std::int32_t gener
   const Part* part = thing_of<Part>(context, id_of(part_slot, part_generation));
   if (behavior == nullptr || part == nullptr) return nullptr;
   NeighborSet& set = behavior->group()->neighbors();
-  return reinterpret_cast<const LimberMeans*>(&set.means_near(*part, least, most, static_cast<unsigned>(want)));
+  const NeighborMeans& means = set.means_near(*part, least, most, static_cast<unsigned>(want));
+  const std::span<const std::int32_t> numbers = set.numbers();
+  if (part->id().slot < numbers.size() && numbers[part->id().slot] >= 0) {
+    const NeighborMeans* const first = &means - numbers[part->id().slot];
+    context.means_of_all = {reinterpret_cast<const LimberMeans*>(first),
+                            numbers.data(),
+                            static_cast<std::int32_t>(numbers.size()),
+                            static_cast<std::int32_t>(behavior->group()->id().slot),
+                            want,
+                            least,
+                            most};
+  }
+  return reinterpret_cast<const LimberMeans*>(&means);
 }
 
 std::int32_t neighbor_part(void* c, std::int32_t slot, std::int32_t generation, std::int32_t index) {

@@ -14,12 +14,23 @@ ScriptContext::ScriptContext(World& w, ScriptHost& h, SceneOptions o)
       options(std::move(o)),
       search([this] { return guard->stop_asked(); }),
       behaviors(std::make_shared<BehaviorScripts>(*this)) {
-  world->store().show_view(view);
+  look_at(world);
 }
 
 ScriptContext::~ScriptContext() {
   behaviors->close();
-  if (world != nullptr) world->store().hide_view(view);
+  look_at(nullptr);
+}
+
+void ScriptContext::look_at(World* other) {
+  if (world != nullptr) {
+    world->store().hide_view(view);
+    world->solids().hide_view(solids);
+  }
+  world = other;
+  if (world == nullptr) return;
+  world->store().show_view(view);
+  world->solids().show_view(solids);
 }
 
 std::int32_t ScriptContext::say(std::string what) {
@@ -54,15 +65,32 @@ std::uint64_t ScriptContext::hash(std::uint64_t start) {
   return hash_bytes({reinterpret_cast<const char*>(kept), params->table().kept_width() * sizeof(double)}, start);
 }
 
-void ScriptContext::begin_call() {
+void ScriptContext::count_call() {
   answer.call = static_cast<std::int32_t>(static_cast<std::uint32_t>(answer.call) + 1);  // wraps after a day
   random_before_ = random;
   seeded_before_ = seeded_with;
+}
+
+void ScriptContext::begin_call() {
+  count_call();
   reset_wanted = false;
+  means_of_all = {};
   world->undo().begin();
 }
 
+bool ScriptContext::next_call() {
+  if (!world->undo().untouched() || !held.empty() || reset_wanted) {
+    end_call(true);
+    begin_call();
+    return true;
+  }
+  count_call();
+  forces.commit(world->loads());
+  return false;
+}
+
 void ScriptContext::end_call(bool good) {
+  forces.apply_committed(world->loads());
   if (good) {
     world->undo().end();
     forces.apply(world->loads());
@@ -77,7 +105,7 @@ void ScriptContext::end_call(bool good) {
     }
     if (reset_wanted) host.ask_reset();
   } else {
-    forces.clear();
+    forces.take_back();
     world->undo().take_back();
     random = random_before_;
     seeded_with = seeded_before_;

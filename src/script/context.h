@@ -37,6 +37,9 @@ struct ScriptContext {
 
   World* world;    ///< Another one once a run beside the show becomes the show; null once it was replaced.
   StoreView view;  ///< Of that world's store: one address for the life of the context.
+  PartSolids::View solids;
+  /// The views become those of that world, or of none.
+  void look_at(World* other);
   ScriptHost& host;
   SceneOptions options;
   ScriptFiles files;
@@ -69,6 +72,7 @@ struct ScriptContext {
   static constexpr std::size_t kWalks = 16;
   std::array<LimberWalk, kWalks> walks{};
   std::array<std::vector<Neighbor>, kWalks> found;
+  LimberMeansOfAll means_of_all{};  ///< The means that were asked for last, of a whole group; until the call ends.
 
   // what the run loaded, by what it asked for: callbacks may have it again, since they must not wait for a disk
   std::map<std::string, std::shared_ptr<const BodyModel>> loaded_models;
@@ -99,6 +103,8 @@ struct ScriptContext {
   void begin_call();
   /// A good one's messages go out; a bad one is taken back, its random draws too.
   void end_call(bool good);
+  /// Ends a good one and begins another; whether it did more than push parts. Where not, it costs next to nothing.
+  bool next_call();
 
   // answers
   std::int32_t say(std::string what);
@@ -110,6 +116,7 @@ struct ScriptContext {
   bool alive(NodeId id) const { return world->store().alive(id); }
 
  private:
+  void count_call();
   Random random_before_;
   std::optional<std::uint64_t> seeded_before_;
 };

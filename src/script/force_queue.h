@@ -18,14 +18,22 @@ class ForceQueue {
   LimberForces* view() { return &view_; }
   /// Room for more; false: there can't be, apply() makes some.
   bool grow();
-  /// Gives all to their parts, in the order in which they came. Parts that are gone are passed over.
+  /// What is there came from calls that ended well: it stays. Most of the time it waits on, for others to come.
+  void commit(PartLoads& loads);
+  /// Gives what stays to its parts, in the order in which it came. Parts that are gone are passed over.
+  void apply_committed(PartLoads& loads);
+  /// Gives all to their parts.
   void apply(PartLoads& loads);
   /// The same in the middle of a call, which may still fail.
   void apply_kept(World& world);
-  void clear() { view_.count = 0; }
+  /// Forgets what came since commit().
+  void take_back() { view_.count = committed_; }
 
  private:
+  void give(std::int32_t from, std::int32_t to, PartLoads& loads) const;
+
   std::vector<LimberForce> entries_;
+  std::int32_t committed_ = 0;  // so many of the entries stay
   LimberForces view_{};
 };
 

@@ -138,13 +138,12 @@ void Guard::begin(Kind kind) {
   watch_.begin(static_cast<std::int64_t>(budget * kMillisecond));
 }
 
-bool Guard::next_call() {
+bool Guard::next_call(bool& changed) {
+  // from here on nobody stops the call before: what has asked until now is seen
+  watch_.next();
   if (reason_ != Reason::none || memory_.used() > memory_.cap() / 2) return false;
-  watch_.end();
-  context_.end_call(true);
-  context_.begin_call();
+  if (context_.next_call()) changed = true;
   memory_.begin_call();
-  watch_.begin(static_cast<std::int64_t>(limits_.call_ms * kMillisecond));
   return true;
 }
 

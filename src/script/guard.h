@@ -45,8 +45,9 @@ class Guard {
   bool call(int arguments, int results, Kind kind = Kind::call);
   const ScriptFault& fault() const { return fault_; }
   /// In the middle of a call: what it did until here was good and stays, and another begins, with a budget of its own.
-  /// False: it is to be stopped, or has much garbage, and should end first.
-  bool next_call();
+  /// False: it is to be stopped, or has much garbage, and should end first. `changed` becomes true where the call did
+  /// more than push parts.
+  bool next_call(bool& changed);
   /// A fault that tells no place is that of the function on top of the stack.
   void blame_function();
 

@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include "base/log.h"
+#include "sim/behavior_group.h"
 #include "sim/body.h"
 
 namespace limber {
@@ -43,18 +44,35 @@ void LuaBehavior::step(double dt) {
   if (started_ && ready()) well(scripts_->step(number_, dt));
 }
 
+// the number of one that needs no more than its step; 0: of one that is to be looked at by itself
+std::int32_t LuaBehavior::number_in_row(const Behavior& member) const {
+  const auto& other = static_cast<const LuaBehavior&>(member);
+  const bool only_steps = other.started_ && !other.inherited_;
+  return only_steps && other.scripts_ == scripts_ && other.file_ == file_ ? other.number_ : 0;
+}
+
 void LuaBehavior::step_group(std::span<Behavior* const> members, double dt) {
-  const auto joins = [&](const Behavior* member) {
-    const auto& other = static_cast<const LuaBehavior&>(*member);
-    return other.only_steps() && other.scripts_ == scripts_ && other.file_ == file_;
-  };
+  // thousands of members lie far from each other: they are looked at only after something happened to them
+  if (std::exchange(numbered_at_, group()->prepared()) != group()->prepared()) {
+    numbers_.clear();
+    for (const auto& member : group()->members()) numbers_.push_back(number_in_row(*member));
+  }
+  const std::span<const std::uint32_t> places = group()->running();
+  row_.clear();
+  for (const std::uint32_t place : places) row_.push_back(numbers_[place]);
+  bool changed = false;
   for (std::size_t i = 0; i < members.size();) {
     std::size_t end = i;
-    while (end < members.size() && joins(members[end])) end++;
+    while (end < members.size() && row_[end] != 0) end++;
     if (end > i) {
-      i += scripts_->step_all(members.subspan(i, end - i), dt);
+      BehaviorScripts::StepRow row{members.subspan(i, end - i), std::span(row_).subspan(i, end - i), changed};
+      scripts_->step_all(row, dt);
+      changed = row.changed;
+      i += row.next;
     } else {
       if (members[i]->runs()) members[i]->step(dt);
+      numbers_[places[i]] = number_in_row(*members[i]);
+      changed = true;
       i++;
     }
   }

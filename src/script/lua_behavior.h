@@ -7,6 +7,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <vector>
 
 #include "script/behavior_scripts.h"
 #include "sim/behavior.h"
@@ -31,14 +32,11 @@ class LuaBehavior final : public Behavior {
   Result<std::string> state() const;
   const BehaviorFile& file() const { return scripts_->file(file_); }
 
-  // for BehaviorScripts, which steps several in one call
-  /// Its number in the Vm; 0: not there yet.
-  std::int32_t number() const { return number_; }
-  using Behavior::fail;
+  using Behavior::fail;  // for BehaviorScripts, which steps several in one call
 
  private:
   bool ready();
-  bool only_steps() const { return started_ && number_ != 0 && !inherited_; }
+  std::int32_t number_in_row(const Behavior& member) const;
   bool well(BehaviorFault fault);
 
   /// A state on its way from another instance, and the text of the file whose it was.
@@ -52,6 +50,10 @@ class LuaBehavior final : public Behavior {
   std::int32_t number_ = 0;  // in the Vm; 0: not there yet
   bool started_ = false;
   std::optional<Inheritance> inherited_;
+  // of the one that speaks for its group
+  std::uint64_t numbered_at_ = 0;      // what BehaviorGroup::prepared() was then
+  std::vector<std::int32_t> numbers_;  // of all members
+  std::vector<std::int32_t> row_;      // scratch: of those that run
 };
 
 }  // namespace limber

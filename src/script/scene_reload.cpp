@@ -34,9 +34,7 @@ std::uint64_t Scene::become_live(World& world, const std::function<NodeId(NodeId
   const bool has_params = c.params != nullptr;
   const Table* const table = has_params ? &c.params->table() : nullptr;
   c.params = nullptr;
-  c.world->store().hide_view(c.view);
-  c.world = &world;
-  world.store().show_view(c.view);
+  c.look_at(&world);
 
   ScriptContext* const old = before == nullptr ? nullptr : before->context_.get();
   std::vector<LiveParam> live;
@@ -55,8 +53,7 @@ std::uint64_t Scene::become_live(World& world, const std::function<NodeId(NodeId
     vm_->take_state(before->vm_->state_text());
     c.timers_at = old->timers_at;
     old->behaviors->close();  // it may go on another thread
-    old->world->store().hide_view(old->view);
-    old->world = nullptr;
+    old->look_at(nullptr);
   }
   vm_->become_live(c.timers_at);
   if (before != nullptr) before->disarm();

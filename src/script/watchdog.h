@@ -30,6 +30,8 @@ struct Watch {
   /// A call begins and ends on this thread. No lock, no allocation; a few nanoseconds.
   void begin(std::int64_t budget_ns);
   void end();
+  /// In the middle of a call: another begins, with the budget anew.
+  void next();
   /// Whether this call is to be stopped: for native code that works on for long. [thread of the call]
   bool stop_asked();
 

@@ -159,6 +159,7 @@ void BehaviorGroup::lay_out() {
   static const std::uint32_t enabled = Body::table().at("enabled").offset;
   static const std::uint32_t mass = Part::table().at("mass").offset;
   laid_out_ = true;
+  prepared_++;
   attention_ = true;
   const NodeSlot* const slots = world_.store().view()->slots;
   const std::uint32_t active = type_->table->row(0).width;
@@ -181,6 +182,7 @@ void BehaviorGroup::lay_out() {
 // the slow way, in a step in which some start or rest with an error
 void BehaviorGroup::prepare_members() {
   attention_ = false;
+  prepared_++;
   for (std::size_t i = 0; i < members_.size(); i++) {
     Behavior& member = *members_[i];
     if (member.runs()) member.prepare();

@@ -53,6 +53,8 @@ class BehaviorGroup {
   };
   const Layout& layout() const { return layout_; }
   std::span<const std::uint32_t> running() const { return running_numbers_; }
+  /// Another number whenever members may be others, or may have been started, since.
+  std::uint64_t prepared() const { return prepared_; }
   /// Seconds of the last tick, spread over the members.
   double seconds_a_member() const;
 
@@ -88,7 +90,8 @@ class BehaviorGroup {
   std::shared_ptr<const BehaviorSetup> member_setup_;
   std::vector<std::unique_ptr<Behavior>> members_;
   Layout layout_;
-  bool laid_out_ = false;                       // false: members or their parts have changed since
+  bool laid_out_ = false;  // false: members or their parts have changed since
+  std::uint64_t prepared_ = 0;
   bool attention_ = true;                       // a member starts, or has an error
   std::uint64_t seed_ = Behavior::kNoSeed;      // of the step before
   std::vector<Behavior*> running_;              // members that run in this step

@@ -312,7 +312,9 @@ void BehaviorList::renew(std::string_view type_name) {
     if (entry.single != nullptr && outdated(*entry.single)) entry.single = renewed(*entry.single, type);
     if (entry.group == nullptr) continue;
     for (auto& member : entry.group->members_) {
-      if (outdated(*member)) member = renewed(*member, type);
+      if (!outdated(*member)) continue;
+      member = renewed(*member, type);
+      entry.group->laid_out_ = false;
     }
     if (entry.group->type_->name == type->name && entry.group->type_ != type) entry.group->renew(type);
   }

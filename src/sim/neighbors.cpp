@@ -34,6 +34,25 @@ void put(const Vec3& v, float* out) {
   for (int i = 0; i < 3; i++) out[i] = static_cast<float>(v[i]);
 }
 
+// a sum over neighbours as a mean, of motions beside the own one
+template <class Sum, class Push, class Motion>
+NeighborMeans mean_of(const Sum& sum, const Push& push, unsigned want, const Motion& own) {
+  NeighborMeans means;
+  const float count = sum.offset[3];
+  if (count == 0) return means;
+  means.count = static_cast<std::uint32_t>(count);
+  const float part = 1 / count;
+  for (std::size_t a = 0; a < 3; a++) means.offset[a] = sum.offset[a] * part;
+  if ((want & kWantVelocity) != 0) {
+    for (std::size_t a = 0; a < 3; a++) means.velocity[a] = sum.velocity[a] * part - own.velocity[a];
+    for (std::size_t a = 0; a < 3; a++) means.spin[a] = sum.spin[a] * part - own.spin[a];
+  }
+  if ((want & kWantPush) != 0) {
+    for (std::size_t a = 0; a < 3; a++) means.push[a] = push.sum[a] * part;
+  }
+  return means;
+}
+
 constexpr std::uint32_t kNoPlace = 0xffffffffu;
 constexpr double kFarthest = 1e7;  // m: further than any two parts are from each other, yet its square is a float
 
@@ -65,12 +84,17 @@ NeighborSet::NeighborSet(World& world, std::vector<Part*> parts) : world_(world)
 
 void NeighborSet::number_parts() {
   centers_.resize(parts_.size());
-  std::fill(numbers_.begin(), numbers_.end(), kNoPlace);
+  std::fill(numbers_.begin(), numbers_.end(), -1);
   for (std::size_t i = 0; i < ids_.size(); i++) {
     const auto slot = static_cast<std::size_t>(ids_[i].slot);
-    if (slot >= numbers_.size()) numbers_.resize(slot + 1, kNoPlace);
-    numbers_[slot] = static_cast<std::uint32_t>(i);
+    if (slot >= numbers_.size()) numbers_.resize(slot + 1, -1);
+    numbers_[slot] = static_cast<std::int32_t>(i);
   }
+}
+
+std::uint32_t NeighborSet::number_of(const Part& part) const {
+  const std::uint32_t slot = part.id().slot;
+  return slot < numbers_.size() ? static_cast<std::uint32_t>(numbers_[slot]) : kNoPlace;
 }
 
 bool NeighborSet::holds(std::span<Part* const> parts) const {
@@ -233,8 +257,7 @@ const NeighborMeans& NeighborSet::means_near(const Part& of, double least, doubl
   gather();
   least = std::max(least, 0.0);
   most = std::min(most, kFarthest);
-  const std::uint32_t slot = of.id().slot;
-  const std::uint32_t own = slot < numbers_.size() ? numbers_[slot] : kNoPlace;
+  const std::uint32_t own = number_of(of);
   if (own == kNoPlace) {
     alone_ = {};
     if (!(most > least) || cloud_.size() == 0) return alone_;
@@ -365,25 +388,29 @@ void NeighborSet::sum_pairs(Grid& grid, Answer& answer) {
   const auto least = static_cast<float>(answer.least);
   const auto most = static_cast<float>(answer.most);
   const float inverse_most = 1 / most;
-  const Lanes one{0, 0, 0, 1};
+  const Lanes one{0, 0, 0, 1}, two{0, 0, 0, 2};
   const auto n = static_cast<std::uint32_t>(cloud_.size());
   sums_.assign(n, Sum{});
   if constexpr ((Want & kWantPush) != 0) pushes_.assign(n, Push{});
+  // pointers of its own: what is written could change the vectors, for all that the compiler knows
+  const Motion* const motions = grid.motions.data();
+  Sum* const sums = sums_.data();
+  std::uint32_t* const found = found_.data();
   for (std::uint32_t place = 0; place < n; place++) {
-    const std::uint32_t count = grid.grid.near_once(place, least, most, found_.data());
+    const std::uint32_t count = grid.grid.near_once(place, least, most, found);
     if (count == 0) continue;
-    const Motion& own = grid.motions[place];
+    const Motion& own = motions[place];
     const Lanes at = load(own.position) - one;
     const Lanes own_velocity = load(own.velocity), own_spin = load(own.spin);
-    Sum& mine = sums_[place];
+    Sum& mine = sums[place];
     Lanes offset = load(mine.offset), velocity = load(mine.velocity), spin = load(mine.spin), push{};
     if constexpr ((Want & kWantPush) != 0) push = load(pushes_[place].sum);
     for (std::uint32_t j = 0; j < count; j++) {
-      const Motion& near = grid.motions[found_[j]];
-      Sum& its = sums_[found_[j]];
+      const Motion& near = motions[found[j]];
+      Sum& its = sums[found[j]];
       const Lanes r = load(near.position) - at;
       offset += r;
-      store(its.offset, load(its.offset) - (r - one - one));
+      store(its.offset, load(its.offset) - (r - two));
       if constexpr ((Want & kWantVelocity) != 0) {
         velocity += load(near.velocity);
         spin += load(near.spin);
@@ -393,7 +420,7 @@ void NeighborSet::sum_pairs(Grid& grid, Answer& answer) {
       if constexpr ((Want & kWantPush) != 0) {
         const Lanes away = pushed(r, inverse_most);
         push += away;
-        float* const its_push = pushes_[found_[j]].sum;
+        float* const its_push = pushes_[found[j]].sum;
         store(its_push, load(its_push) - away);
       }
     }
@@ -410,25 +437,18 @@ void NeighborSet::sum_pairs(Grid& grid, Answer& answer) {
     const std::uint32_t place = place_[answer.at[i]];
     if (place == kNoPlace) continue;  // its body is out of the world
     const Push& push = (Want & kWantPush) != 0 ? pushes_[place] : none;
-    answer.means[i] = means_of(sums_[place], push, Want, answer.spots[i]);
+    answer.means[i] = mean_of(sums[place], push, Want, motions[place]);
   }
 }
 
 NeighborMeans NeighborSet::means_of(const Sum& sum, const Push& push, unsigned want, const Spot& spot) const {
-  NeighborMeans means;
-  const float count = sum.offset[3];
-  if (count == 0) return means;
-  means.count = static_cast<std::uint32_t>(count);
-  const float part = 1 / count;
   const double* const own = world_.store().live().data() + spot.live;
-  for (std::size_t a = 0; a < 3; a++) {
-    means.offset[a] = sum.offset[a] * part;
-    if ((want & kWantPush) != 0) means.push[a] = push.sum[a] * part;
-    if ((want & kWantVelocity) == 0) continue;
-    means.velocity[a] = sum.velocity[a] * part - static_cast<float>(own[part_offsets().velocity + a]);
-    means.spin[a] = sum.spin[a] * part - static_cast<float>(own[part_offsets().spin + a]);
+  Motion motion{};
+  if ((want & kWantVelocity) != 0) {
+    put(vec3_at(own + part_offsets().velocity), motion.velocity);
+    put(vec3_at(own + part_offsets().spin), motion.spin);
   }
-  return means;
+  return mean_of(sum, push, want, motion);
 }
 
 void NeighborSet::near(const Part& of, double radius, std::vector<Neighbor>& out) {
@@ -436,8 +456,7 @@ void NeighborSet::near(const Part& of, double radius, std::vector<Neighbor>& out
   if (cloud_.size() == 0 || !(radius >= 0)) return out.clear();
   const auto reach = static_cast<float>(std::min(radius, kFarthest));
   Grid& grid = grid_for(reach);
-  const std::uint32_t slot = of.id().slot;
-  const std::uint32_t own = slot < numbers_.size() ? numbers_[slot] : kNoPlace;
+  const std::uint32_t own = number_of(of);
   std::optional<std::span<const std::uint32_t>> near;
   const bool known = own != kNoPlace && world_.store().live()[spots_[own].enabled] != 0;
   if (known) near = lists_.of(own, reach, {cloud_, grid.grid, indices_, parts_.size()});

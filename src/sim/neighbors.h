@@ -56,6 +56,9 @@ class NeighborSet {
   /// Means for one part, which need not be in the set. Where it is, all parts of the set are answered when the first
   /// asks in a tick. `least` below 0 is 0. Valid until the next call.
   const NeighborMeans& means_near(const Part& of, double least, double most, unsigned want);
+  /// Where in parts() the part of a slot is; -1: nowhere. What means_near tells of one part of the set it has told of
+  /// all: theirs stand before and behind in that order, and stay as long as the tick and the set.
+  std::span<const std::int32_t> numbers() const { return numbers_; }
   /// All within `radius` of a part, in the order of parts().
   void near(const Part& of, double radius, std::vector<Neighbor>& out);
   /// A body's parts are passed over from now on: it goes.
@@ -108,6 +111,7 @@ class NeighborSet {
   };
 
   void number_parts();
+  std::uint32_t number_of(const Part& part) const;
   Spot spot_of(const Part& part) const;
   Vec3 center_of(const Spot& spot) const;
   void gather();
@@ -134,8 +138,8 @@ class NeighborSet {
   std::vector<Part*> parts_;
   std::vector<NodeId> ids_;
   std::vector<Spot> spots_;
-  std::vector<std::uint32_t> numbers_;  // of parts by their slots
-  std::vector<Vec3> centers_;           // of mass, of the parts whose bodies are in the world
+  std::vector<std::int32_t> numbers_;  // of parts by their slots; -1: not in the set
+  std::vector<Vec3> centers_;          // of mass, of the parts whose bodies are in the world
   NeighborLists lists_;
   std::vector<std::int32_t> ordinals_;  // of bodies by their slots; -1: of no part here
   std::int32_t bodies_ = 0;

@@ -84,6 +84,7 @@ Part::Part(Body& body, NodeId group, std::string name, std::shared_ptr<const Geo
   rigid_->setUserPointer(this);
   rigid_->setActivationState(DISABLE_DEACTIVATION);
   set_pose(pose);
+  body_.world().solids().add(*this);
 }
 
 Part::~Part() {

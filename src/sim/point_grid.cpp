@@ -22,6 +22,7 @@ constexpr float kFurthestCell = 1e9f;      // no point is that far
 constexpr float kNowhere = std::numeric_limits<float>::max();
 
 using Word = std::uint64_t;
+using FourPlaces [[gnu::vector_size(16)]] = std::uint32_t;
 
 #if defined(__SSE2__)
 
@@ -186,19 +187,29 @@ void PointGrid::build(const PointCloud& cloud, float reach) {
 }
 
 void PointGrid::collect_run(std::uint32_t begin, std::uint32_t end) {
-  // whole lanes; what spills over is written again by what comes next
-  const auto lane = [](auto& to, std::size_t at, const auto& from, std::uint32_t i) {
-    std::memcpy(to.data() + at, from.data() + i, 4 * sizeof(float));
-  };
-  for (std::uint32_t i = begin; i < end; i += 4) {
-    const std::size_t at = count_ + (i - begin);
-    lane(candidates_.x, at, points_.x, i);
-    lane(candidates_.y, at, points_.y, i);
-    lane(candidates_.z, at, points_.z, i);
-    lane(candidates_.body, at, points_.body, i);
-    for (std::uint32_t k = 0; k < 4; k++) places_[at + k] = i + k;
+  // whole lanes; what spills over is written again by what comes next. Pointers of its own: what is written could
+  // change the vectors, for all that the compiler knows
+  const auto lane = [](auto* to, const auto* from, std::size_t i) { std::memcpy(to + i, from + i, 4 * sizeof *to); };
+  float* const x = candidates_.x.data() + count_;
+  float* const y = candidates_.y.data() + count_;
+  float* const z = candidates_.z.data() + count_;
+  std::int32_t* const body = candidates_.body.data() + count_;
+  std::uint32_t* const places = places_.data() + count_;
+  const float* const from_x = points_.x.data() + begin;
+  const float* const from_y = points_.y.data() + begin;
+  const float* const from_z = points_.z.data() + begin;
+  const std::int32_t* const from_body = points_.body.data() + begin;
+  const std::size_t count = end - begin;
+  FourPlaces four = FourPlaces{0, 1, 2, 3} + begin;
+  for (std::size_t i = 0; i < count; i += 4) {
+    lane(x, from_x, i);
+    lane(y, from_y, i);
+    lane(z, from_z, i);
+    lane(body, from_body, i);
+    std::memcpy(places + i, &four, sizeof four);
+    four += 4;
   }
-  count_ += end - begin;
+  count_ += count;
 }
 
 // the cells from .. to along x of a row beside a cell's

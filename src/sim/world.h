@@ -14,6 +14,7 @@
 #include "sim/body.h"
 #include "sim/contacts.h"
 #include "sim/island_world.h"
+#include "sim/part_solids.h"
 #include "sim/shape.h"
 #include "sim/visuals.h"
 #include "sim/world_undo.h"
@@ -105,6 +106,7 @@ class World {
   const std::vector<std::shared_ptr<const Geometry>>& geometries_of(const std::shared_ptr<const BodyModel>& model);
 
   PartLoads& loads() { return loads_; }
+  PartSolids& solids() { return solids_; }
   IslandWorld& bullet() { return *bullet_; }
   Contacts& contact_log() { return contacts_; }
   /// What takes a guarded call of a script back.
@@ -125,6 +127,7 @@ class World {
   NodeId id_, body_group_, shape_group_;
   std::unique_ptr<IslandWorld> bullet_;
   PartLoads loads_;
+  PartSolids solids_;
   std::vector<std::unique_ptr<Shape>> shapes_;
   std::vector<std::unique_ptr<Body>> bodies_;
   std::unique_ptr<BehaviorList> behaviors_;

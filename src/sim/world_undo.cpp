@@ -71,6 +71,10 @@ void WorldUndo::take_back() {
   world_.reset_asked_ = reset_asked_;
 }
 
+bool WorldUndo::untouched() const {
+  return entries_.empty() && world_.store_.undo_untouched() && world_.reset_asked_ == reset_asked_;
+}
+
 void WorldUndo::note(Step step, void* owner, std::size_t value) {
   if (active_) entries_.push_back({step, owner, value});
 }

@@ -30,6 +30,8 @@ class WorldUndo {
   /// The call failed: the world is as it was at begin(), to the bit. What was made goes, newest first.
   void take_back();
   bool active() const { return active_; }
+  /// Whether nothing was kept since begin(): there is nothing to take back.
+  bool untouched() const;
 
   /// The forces that wait in a part, and what a body knows beside its rows: before they are changed.
   void keep(Part& part);

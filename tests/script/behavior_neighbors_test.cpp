@@ -134,6 +134,66 @@ TEST(BehaviorNeighbors, MeansAreThoseOfAWalk) {
   for (const std::string& line : eyes) EXPECT_TRUE(line.ends_with(" ")) << line;
 }
 
+// balls of two bodies by two, each with an eye; two groups look at them, one for balls, one for eyes
+Lines seen_by_two_groups(const std::string& step) {
+  BehaviorStage stage;
+  stage.write("behaviors_lua/test.lua", "local seen = {}\n" + group(R"(
+local function show(of)
+  local n, way = of:neighbor_means(of.parts[1], 0, 2.5)
+  print(string.format('%s/%s %d %.17g %.17g', of.name, of.body.name, n, way.x, way.y))
+end
+)" + step));
+  EXPECT_EQ(stage.play(R"(
+sim.gravity = vec3()
+local ball = sim:add_sphere_shape('ball', 0.1)
+for i = 1, 5 do
+  local body = sim:add_body('b' .. i)
+  body:add_part('ball', ball, { position = vec3(i, i * i / 10, 0) })
+  body:add_part('eye', ball, { position = vec3(i + 0.3, 1, 0) })
+end
+sim:add_group_behavior('test', 'balls', { parts = 'ball' })
+sim:add_group_behavior('test', 'eyes', { parts = 'ball', neighbor_parts = 'eye' })
+)",
+                       2),
+            "");
+  for (const auto& body : stage.world.bodies()) {
+    for (const Behavior* behavior : body->behaviors()) EXPECT_EQ(behavior->error(), "");
+  }
+  return stage.host.printed;
+}
+
+TEST(BehaviorNeighbors, MeansStandWhereTheyWereTold) {
+  const Lines lines = seen_by_two_groups("show(self)");
+  ASSERT_EQ(lines.size(), 20u);
+  EXPECT_NE(lines[0].substr(lines[0].find(' ')), lines[5].substr(lines[5].find(' ')));
+  // who asks something else before is told by a call
+  EXPECT_EQ(seen_by_two_groups("self:neighbor_means(self.parts[1], 0, 1) show(self)"), lines);
+  EXPECT_EQ(seen_by_two_groups("self:neighbor_push(self.parts[1], 0, 2.5) show(self)"), lines);
+  // one that is asked by another keeps to its own group
+  const Lines mixed = seen_by_two_groups(
+      "seen[self.name .. self.body.name] = self show(self) "
+      "if self.name == 'eyes' then show(seen['balls' .. self.body.name]) end");
+  ASSERT_EQ(mixed.size(), 30u);
+  for (std::size_t i = 0; i < 5; i++) {
+    EXPECT_EQ(mixed[5 + 2 * i], lines[5 + i]);
+    EXPECT_EQ(mixed[6 + 2 * i], lines[i]);
+  }
+}
+
+TEST(BehaviorNeighbors, MeansOfOneThatHasGoneAreNotTold) {
+  BehaviorStage stage;
+  stage.write("behaviors_lua/test.lua", "local first\n" + group(R"(
+first = first or self.parts[1]
+self:neighbor_means(self.parts[1], 0, 2)
+if self.body.name == 'b2' then sim:body('b1'):remove() end
+if self.body.name == 'b3' then self:neighbor_means(first, 0, 2) end
+)"));
+  EXPECT_EQ(stage.play(row_of_balls(3), 1), "");
+  EXPECT_EQ(first_line(stage.world.find_body("b3")->find_behavior("swarm")->error()),
+            "behaviors_lua/test.lua:7: part 'b1/ball' no longer exists (thing.alive tells)");
+  EXPECT_EQ(stage.world.find_body("b2")->find_behavior("swarm")->error(), "");
+}
+
 TEST(BehaviorNeighbors, MistakesAreExplained) {
   const auto error = [](const std::string& step) {
     BehaviorStage stage;

@@ -32,6 +32,7 @@ constexpr Hostile kHostile[] = {
      "other.root:apply_force(vec3(100, 0, 0)) other.root:apply_impulse(vec3(5, 0, 0)) "
      "other:behavior('it').max_amp = 7 sim.gravity = vec3(0, 0, 5) error('done')",
      "done"},
+    {"KicksTheOneBefore", "sim:body('before').root:apply_impulse(vec3(5, 0, 0)) error('done')", "done"},
     {"ResetsOthers", "sim:body('healthy'):reset() sim:reset() error('done')", "done"},
     {"RemovesOthers", "sim:body('healthy'):remove() error('done')", "done"},
     {"RemovesOthersBehaviors", "sim:body('healthy'):behavior('it'):remove() error('done')", "done"},

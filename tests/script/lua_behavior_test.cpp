@@ -229,6 +229,35 @@ TEST(LuaBehavior, AFaultSuspendsItAloneUntilItIsTriedAgain) {
   stage.world.behaviors().on_fault({});
 }
 
+// members of a group step in one call; what one of them does to those behind it counts at once
+TEST(LuaBehavior, AMemberThatAnotherSwitchesOffRests) {
+  BehaviorStage stage;
+  stage.write("behaviors_lua/test.lua", R"(
+return behavior { group = true, step = function(self)
+  print(self.body.name)
+  if self.body.name == "a" then sim:body("b"):behavior("all").active = false end
+  if self.body.name == "c" then sim:body("d").enabled = false end
+  if self.body.name == "e" then sim:body("f"):behavior("all"):remove() end
+end })");
+  ASSERT_EQ(stage.play(R"(
+local ball = sim:add_sphere_shape("ball", 0.1)
+for i, name in ipairs { "a", "b", "c", "d", "e", "f", "g" } do
+  sim:add_body(name):add_part("ball", ball, { position = vec3(i, 0, 0) })
+end
+sim:add_group_behavior("test", "all")
+)",
+                       1),
+            "");
+  EXPECT_EQ(stage.host.printed, (std::vector<std::string>{"a", "c", "e", "g"}));
+  stage.host.printed.clear();
+  const double on = 1;
+  const Behavior& b = *stage.world.find_body("b")->find_behavior("all");
+  ASSERT_TRUE(stage.store.set(b.id(), "active", {&on, 1}).ok());
+  stage.world.find_body("d")->set_enabled(true);
+  stage.tick();
+  EXPECT_EQ(stage.host.printed, (std::vector<std::string>{"a", "c", "e", "g"}));
+}
+
 TEST(LuaBehavior, OneThatFailsInItsStartTriesThatAgain) {
   BehaviorStage stage;
   ASSERT_EQ(stage.play_one("return behavior { params = { { 'bad', true } },\n"

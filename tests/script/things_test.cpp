@@ -243,6 +243,45 @@ TEST(Things, MembersBesideTheRows) {
   EXPECT_EQ(arm_value("#arm:state_hash(), #sim:state_hash(), arm:state_hash() ~= sim:state_hash()"), "16\t16\ttrue");
 }
 
+// what follows from other numbers is worked out here and there: the same bits, at any moment
+TEST(Things, CentresAndInertiasAreTheWorldsToTheBit) {
+  Stage stage;
+  ASSERT_EQ(stage.play(R"(
+local both = sim:add_compound_shape("both")
+both:add_child(sim:add_box_shape("box", { 0.2, 0.3, 0.5 })):add_child(sim:add_sphere_shape("sphere", 0.3), { 0.1, 0.7, 3 })
+local part = sim:add_body("a"):add_part("p", both, { mass = 1.7, position = { 0.1, 0.2, 0.3 } })
+local shown = ("%.17g "):rep(6)
+local function show()
+  local c, i = part.center, part.inertia
+  print(shown:format(c.x, c.y, c.z, i.x, i.y, i.z))
+end
+sim:on_start(show)
+sim:on_start(function()
+  part.position, part.rotation, part.mass = vec3(-3.3, 0.7, 1 / 3), quat.euler(0.3, -1.1, 2.2), 0.3
+  show()
+  part.body:copy("b", { position = vec3(5, 0, 0) })
+end)
+sim:on_start(function()
+  part.position, part.rotation, part.mass = vec3(9, 9, 9), quat(), 9
+  error("no")
+end)
+sim:on_start(show)
+)"),
+            "");
+  const auto told = [&] {
+    const Part& part = *stage.world.find_body("a")->root();
+    double inertia[3];
+    stage.store.get(part.id(), Part::table().at("inertia"), inertia);
+    const Vec3 c = part.center();
+    return fmt::format("{:.17g} {:.17g} {:.17g} {:.17g} {:.17g} {:.17g} ", c.x, c.y, c.z, inertia[0], inertia[1],
+                       inertia[2]);
+  };
+  ASSERT_EQ(stage.host.printed.size(), 3u);
+  EXPECT_NE(stage.host.printed[0], stage.host.printed[1]);
+  EXPECT_EQ(stage.host.printed[1], told());
+  EXPECT_EQ(stage.host.printed[2], told());
+}
+
 TEST(Things, ThingsAreComparedAndAreKeys) {
   EXPECT_EQ(arm_value("link == arm:part('link'), link == tip, link == nil, j1 == m1, arm == link.body"),
             "true\tfalse\tfalse\tfalse\ttrue");

@@ -286,9 +286,14 @@ P.not_writable = not_writable
 -- gives a class's handles their behaviour, once all of its members are known
 function P.finish(class)
   local getters, setters, methods, ctype = class.getters, class.setters, class.methods, class.ctype
+  -- a method is told from an unknown name: compiled code finds what is there for less than what is not
+  local members = {}
+  for key in pairs(methods) do members[key] = false end
+  for key, get in pairs(getters) do members[key] = get end
   ffi.metatype(ctype, {
     __index = function(h, key)
-      local get = getters[key]
+      local get = members[key]
+      if get == nil then get = getters[key] end  -- one that came later
       if get then
         local value = get(h)  -- no tail call: a getter returns to a Lua function, so that it can be compiled
         return value

@@ -10,6 +10,7 @@ for _, name in ipairs { "body", "part", "joint", "motor", "shape" } do
   P.derive(classes[name])
   P.common(classes[name])
 end
+P.solid_members(part)
 
 local function related(which)
   return function(h)

@@ -5,15 +5,19 @@ local ffi, api, ctx, answer = P.ffi, P.api, P.ctx, P.answer
 local fail, describe, istype = P.fail, P.describe, P.ffi.istype
 local native_ipairs = ipairs
 
-local instances = {}  -- by number: handle, type, state, lists
-local free = {}
+-- by number; what a step reads most stands in tables of its own: to walk through thousands of instances takes time for
+-- each place in memory that is looked at
+local instances = {}  -- handle, type, body, state, rng
+local group_of = {}   -- slot of the group's node
 local kinds = { parts = 1, joints = 2, motors = 3 }
+local lists_of = { parts = {}, joints = {}, motors = {}, neighbor_parts = {} }
+P.group_of = group_of
 
 local function instance_of(h) return instances[h.number_] or P.gone(h) end
 
 -- Lists of `self`: what they hold is gathered when it is asked for and kept until start() is called again.
 local S = ffi.typeof("struct { const int32_t number_; }")
-local lists, list_names = {}, {}
+local lists, list_names, free = {}, {}, {}
 P.S = S
 
 local function gather(h, kind)
@@ -35,6 +39,17 @@ local function next_item(list, i)
   if item then return i, item end
 end
 
+-- a long list has a walk of its own, which finds its items without looking for them at each step, and which no script
+-- can change
+local walks = {}
+local function walk_of(items)
+  return function(_, i)
+    i = i + 1
+    local item = items[i]
+    if item then return i, item end
+  end
+end
+
 ffi.metatype(S, {
   __index = function(list, key)
     if type(key) == "number" then return items_of(list)[key] end
@@ -50,41 +65,44 @@ ffi.metatype(S, {
 
 local ipairs_of_things = P.ipairs
 function P.ipairs(t)
-  if istype(S, t) then return next_item, t, 0 end
+  if istype(S, t) then return walks[t.number_] or next_item, t, 0 end
   local f, s, i = ipairs_of_things(t)
   return f, s, i
 end
 
-local function keep_list(instance, name, items)
+local function keep_list(name, items)
   local number = #free > 0 and table.remove(free) or #lists + 1
-  lists[number], list_names[number] = items, name
-  instance[name] = S(number)
-  return instance[name]
+  lists[number], list_names[number], walks[number] = items, name, #items > 1 and walk_of(items)
+  return (S(number))
 end
 
-local function drop_list(instance, name)
-  if not instance[name] then return end
-  local number = instance[name].number_
-  lists[number], free[#free + 1], instance[name] = {}, number, nil
+local function keep_list_of(number, name, items)
+  lists_of[name][number] = keep_list(name, items)
+  return lists_of[name][number]
 end
 
-local function drop_lists(instance)
-  for name in pairs(kinds) do drop_list(instance, name) end
-  drop_list(instance, "neighbor_parts")
+local function drop_list(number, name)
+  local list = lists_of[name][number]
+  if not list then return end
+  lists[list.number_], free[#free + 1], lists_of[name][number] = {}, list.number_, false
+end
+
+local function drop_lists(number)
+  for name in pairs(lists_of) do drop_list(number, name) end
 end
 
 -- a group's neighbours come and go without a start of its members
 local function neighbor_parts(h)
-  local instance, version = instance_of(h), api.structure(ctx)
-  if not instance.neighbor_parts or instance.structure ~= version then
-    drop_list(instance, "neighbor_parts")
-    keep_list(instance, "neighbor_parts", P.neighbor_parts(h, instance.body))
+  local instance, number, version = instance_of(h), h.number_, api.structure(ctx)
+  if not lists_of.neighbor_parts[number] or instance.structure ~= version then
+    drop_list(number, "neighbor_parts")
+    keep_list_of(number, "neighbor_parts", P.neighbor_parts(h, instance.body))
     instance.structure = version
   end
-  return instance.neighbor_parts
+  return lists_of.neighbor_parts[number]
 end
 
-function P.empty_list() return keep_list({}, "warm", {}) end
+function P.empty_list() return (keep_list("warm", {})) end
 
 -- what every `self` has beside its parameters
 local getters = {
@@ -97,9 +115,9 @@ local getters = {
   alive = function(h) return P.alive(h) end,
 }
 for name in pairs(kinds) do
+  local known = lists_of[name]
   getters[name] = function(h)
-    local instance = instance_of(h)
-    return instance[name] or keep_list(instance, name, gather(h, kinds[name]))
+    return known[h.number_] or keep_list_of(h.number_, name, instance_of(h) and gather(h, kinds[name]))
   end
 end
 
@@ -175,12 +193,14 @@ function entry.make_behavior(file, slot, generation)
   local body = P.answered()
   P.introduce(h, name, body)
   instances[number] = { handle = h, type = of, body = body, state = {}, rng = P.R(slot, generation) }
+  group_of[number] = of.is_group and api.neighbor_part(ctx, slot, generation, -2)
+  for _, known in pairs(lists_of) do known[number] = false end  -- a row without gaps
   selfs[number], starts[number], steps[number], migrates[number] = h, of.start, of.step, of.migrate
   return number
 end
 
 -- what it acts on may have changed
-function entry.renew_behavior(number) drop_lists(instances[number]) end
+function entry.renew_behavior(number) drop_lists(number) end
 
 -- takes a state as text: the state
 function entry.restore_behavior(number, text)
@@ -210,6 +230,6 @@ function entry.behavior_state(number)
 end
 
 function entry.drop_behavior(number)
-  drop_lists(instances[number])
+  drop_lists(number)
   instances[number], selfs[number], steps[number] = false, false, false
 end
