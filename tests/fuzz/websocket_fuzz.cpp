@@ -67,7 +67,7 @@ class Desk {
     }
     if (++inputs_ % 16 == 0) look();
   }
-  bool worn() const { return inputs_ >= kRenewEvery || show_.engine.world().bodies().size() < 4; }
+  bool worn() { return inputs_ >= kRenewEvery || show_.engine.world().bodies().size() < 4; }
 
  private:
   // what has come takes effect; the other client is told of a value that is set now
