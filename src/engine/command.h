@@ -68,7 +68,7 @@ struct Counters {
   std::atomic<std::uint64_t> dropped{0};         ///< Lost here: the inbox was full.
   std::atomic<std::uint64_t> dropped_kernel{0};  ///< Lost by the kernel: the socket's buffer was full.
   std::atomic<std::uint64_t> sent{0};            ///< Datagrams sent.
-  std::atomic<std::uint64_t> unsent{0};          ///< Datagrams that the system did not take.
+  std::atomic<std::uint64_t> unsent{0};          ///< Datagrams that the system did not take, or that came back.
 };
 
 }  // namespace limber

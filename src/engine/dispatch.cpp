@@ -74,12 +74,9 @@ std::string Dispatch::seed_address(const Table& table, const Row& row) {
 
 std::span<const Irregular> Dispatch::irregulars() { return kIrregulars; }
 
-Dispatch::Dispatch(World& world) : world_(world), store_(world.store()) {
-  for (const Table* table : named_classes()) {
-    for (const Row& row : table->rows()) {
-      if (std::string address = seed_address(*table, row); !address.empty()) by_name_[address] = {table, &row, nullptr};
-    }
-  }
+Dispatch::Dispatch(World& world, std::span<const Table* const> more) : world_(world), store_(world.store()) {
+  for (const Table* table : named_classes()) add_class(*table);
+  for (const Table* table : more) add_class(*table);
   for (const Irregular& irregular : kIrregulars) {
     const bool lists = irregular.address.starts_with("/list/");
     const bool behavior = irregular.address.starts_with("/physics/behavior/");
@@ -93,6 +90,12 @@ Dispatch::Dispatch(World& world) : world_(world), store_(world.store()) {
   for (const auto& [address, entry] : by_name_) addresses_.push_back(address);
   for (const char* address : kGone) by_name_[address].irregular = &Dispatch::gone;
   std::sort(addresses_.begin(), addresses_.end());
+}
+
+void Dispatch::add_class(const Table& table) {
+  for (const Row& row : table.rows()) {
+    if (std::string address = seed_address(table, row); !address.empty()) by_name_[address] = {&table, &row, nullptr};
+  }
 }
 
 Outcome Dispatch::execute(const Message& message) {

@@ -30,7 +30,9 @@ class Dispatch {
   /// Work of all patterns between two ticks; see PatternBudget.
   static constexpr int kTickWork = 4 * PatternBudget::kMessage;
 
-  explicit Dispatch(World& world);
+  /// `more`: classes beside the world's own, whose things stand in a group of their name in each body; one with a
+  /// class's own addresses goes before it.
+  explicit Dispatch(World& world, std::span<const Table* const> more = {});
 
   Outcome execute(const Message& message);
   /// Near names are looked for in so many messages between two calls; others are refused with a shorter text.
@@ -64,6 +66,7 @@ class Dispatch {
   template <class T>
   using ByText = std::unordered_map<std::string, T, TextHash, std::equal_to<>>;
 
+  void add_class(const Table& table);
   Outcome execute_one(const Message& message);
   /// The one thing of a class that has one only, such as the world; else a null id.
   NodeId only_thing(const Table& table) const;

@@ -84,7 +84,7 @@ const Table& CounterNode::table() {
                                counter("dropped", "Messages lost here: more came than a tick takes."),
                                counter("dropped_kernel", "Datagrams lost by the kernel: its buffer was full."),
                                counter("sent", "Datagrams sent."),
-                               counter("unsent", "Datagrams that the system did not take."),
+                               counter("unsent", "Datagrams that the system did not take, or that came back."),
                            });
   return table;
 }

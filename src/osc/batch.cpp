@@ -8,6 +8,9 @@
 #include <array>
 #include <cerrno>
 #include <cstring>
+#include <optional>
+
+#include "osc/refusals.h"
 
 namespace limber {
 
@@ -73,6 +76,7 @@ BatchResult send_batch(int fd, const Endpoint& to, std::span<const char> bytes, 
   Call call;
   BatchResult result;
   std::size_t at = 0;  // bytes before datagram `result.sent`
+  std::optional<std::size_t> again;
   while (result.sent < sizes.size()) {
     std::size_t count = 0;
     std::size_t next = result.sent;
@@ -85,6 +89,10 @@ BatchResult send_batch(int fd, const Endpoint& to, std::span<const char> bytes, 
     const int done = sendmmsg(fd, call.headers.data(), static_cast<unsigned>(count), MSG_DONTWAIT | MSG_NOSIGNAL);
     if (done < 0) {
       if (errno == EINTR) continue;
+      if (Refusals::tells_of_earlier(errno) && again != result.sent) {
+        again = result.sent;
+        continue;
+      }
       if (call.datagrams[0] > 1 && segmentation_refused(errno)) {
         segmentation = false;
         continue;

@@ -16,6 +16,12 @@
 
 namespace limber {
 
+namespace {
+
+constexpr std::int64_t kListenPause = 1'000'000'000;  // ns between two tries to open a port that is taken
+
+}  // namespace
+
 Network::Network(EngineLink& link, OscOptions options, const LiveOffsets& offsets, NetClock clock, LookUp look_up)
     : link_(link),
       options_(std::move(options)),
@@ -90,10 +96,12 @@ void Network::run() {
     take_packets();
     receiver_.release_due();
     apply_new_plan();
+    listen_again();
     subscribers_.work();
     aim_at_subscribers();
     send_outbox();
     streams_.send_due(sender_.fd());
+    refusals_.take(sender_.fd(), link_.counters, clock_.steady());
   }
 }
 
@@ -102,7 +110,9 @@ void Network::wait_for_something() {
   polled.push_back({wake_->fd(), POLLIN, 0});
   for (const int fd : descriptors_) polled.push_back({fd, POLLIN, 0});
   std::optional<std::int64_t> wait = streams_.wait();
-  for (const auto other : {receiver_.wait(), subscribers_.wait()}) {
+  std::optional<std::int64_t> listen;
+  if (listen_at_) listen = std::max<std::int64_t>(0, *listen_at_ - clock_.steady());
+  for (const auto other : {receiver_.wait(), subscribers_.wait(), listen}) {
     if (other && (!wait || *other < *wait)) wait = other;
   }
   timespec limit{};
@@ -115,6 +125,8 @@ void Network::wait_for_something() {
 std::vector<std::string> Network::apply(const OscPlan& plan, bool wait_for_names) {
   std::vector<std::string> faults = receiver_.listen(plan.listen);
   descriptors_ = receiver_.descriptors();
+  listen_at_.reset();
+  if (receiver_.wants_more(plan.listen)) listen_at_ = clock_.steady() + kListenPause;
   plan_ = plan;
   said_.clear();
   names_.forget();
@@ -166,6 +178,18 @@ void Network::apply_new_plan() {
   const bool other = plan != plan_;
   if (!other && !found) return;
   for (const std::string& fault : other ? apply(plan, false) : aim(false)) log_error("{}", fault);
+  for (const std::string& line : lines()) log_info("{}", line);
+}
+
+// a port that another program holds, or an address that is not there yet: it was said, and is had when it is free
+void Network::listen_again() {
+  if (!listen_at_ || clock_.steady() < *listen_at_) return;
+  (void)receiver_.listen(plan_.listen);
+  listen_at_.reset();
+  if (receiver_.wants_more(plan_.listen)) listen_at_ = clock_.steady() + kListenPause;
+  if (receiver_.descriptors() == descriptors_) return;
+  descriptors_ = receiver_.descriptors();
+  renew_lines();
   for (const std::string& line : lines()) log_info("{}", line);
 }
 

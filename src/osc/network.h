@@ -15,6 +15,7 @@
 #include "osc/names.h"
 #include "osc/options.h"
 #include "osc/receiver.h"
+#include "osc/refusals.h"
 #include "osc/sender.h"
 #include "osc/streams.h"
 #include "osc/subscribers.h"
@@ -53,6 +54,7 @@ class Network {
   std::vector<std::string> aim(bool wait_for_names);
   void renew_lines();
   void apply_new_plan();
+  void listen_again();
   void aim_at_subscribers();
   void aim_streams();
   void pong(const Origin& to);
@@ -72,6 +74,7 @@ class Network {
   Receiver receiver_;
   Sender sender_;
   HostNames names_;
+  Refusals refusals_;
   Streams streams_;
   Subscribers subscribers_;
   Inbox<Packet> packets_{8192, std::size_t{16} << 20};
@@ -82,6 +85,7 @@ class Network {
   std::vector<std::string> said_;  // faults of this plan's targets
   std::vector<Outgoing> outgoing_;
   std::vector<int> descriptors_;
+  std::optional<std::int64_t> listen_at_;  // when ports that could not be had are tried again, ns
   std::thread thread_;
   std::atomic<bool> stop_{false};
 

@@ -92,6 +92,13 @@ std::vector<std::string> Receiver::listen(const std::vector<ListenAddress>& addr
   return faults;
 }
 
+bool Receiver::wants_more(const std::vector<ListenAddress>& addresses) const {
+  const bool numbers = std::ranges::all_of(addresses, [](const auto& a) { return parse_ipv4(a.address).has_value(); });
+  return numbers && std::ranges::any_of(addresses, [this](const ListenAddress& address) {
+           return std::ranges::none_of(sockets_, [&](const auto& s) { return s->wish == address; });
+         });
+}
+
 std::optional<std::string> Receiver::open(const ListenAddress& address) {
   const std::string name = fmt::format("{}:{}", printable(address.address), address.port);
   const Result<Endpoint> at = resolve(address.address, address.port);

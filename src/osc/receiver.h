@@ -39,6 +39,8 @@ class Receiver {
 
   /// Opens what is new in the list, closes what is not in it, keeps the rest. The texts of what could not be opened.
   std::vector<std::string> listen(const std::vector<ListenAddress>& addresses);
+  /// Whether one of them could not be opened and may be later. Names are left out: to look them up may take seconds.
+  bool wants_more(const std::vector<ListenAddress>& addresses) const;
   void close();
 
   /// The sockets to poll, and where they are bound, in the order of opening.

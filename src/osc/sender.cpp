@@ -13,6 +13,7 @@
 
 #include "base/log.h"
 #include "base/text.h"
+#include "osc/refusals.h"
 #include "osc/tap.h"
 
 namespace limber {
@@ -51,6 +52,7 @@ Result<void> Sender::open() {
   setsockopt(socket->fd(), SOL_SOCKET, SO_RCVBUF, &kUnreadBuffer, sizeof kUnreadBuffer);
   const int on = 1;
   setsockopt(socket->fd(), SOL_SOCKET, SO_BROADCAST, &on, sizeof on);
+  Refusals::want(socket->fd());
   socket_ = std::move(*socket);
   return {};
 }
@@ -111,8 +113,11 @@ void Sender::to_subscribers(std::span<const char> packet) {
 
 void Sender::datagram(int fd, const Endpoint& to, std::span<const char> packet) {
   const sockaddr_in address = socket_address(to);
-  const auto* where = reinterpret_cast<const sockaddr*>(&address);
-  if (sendto(fd, packet.data(), packet.size(), MSG_DONTWAIT | MSG_NOSIGNAL, where, sizeof address) >= 0) {
+  const auto send = [&] {
+    const auto* where = reinterpret_cast<const sockaddr*>(&address);
+    return sendto(fd, packet.data(), packet.size(), MSG_DONTWAIT | MSG_NOSIGNAL, where, sizeof address) >= 0;
+  };
+  if (send() || (Refusals::tells_of_earlier(errno) && send())) {
     counters_.sent.fetch_add(1, std::memory_order_relaxed);
     if (traffic_.watched()) note_sent(traffic_, to, packet);
     return;

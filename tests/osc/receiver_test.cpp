@@ -118,7 +118,7 @@ TEST(Receiver, PingsAreAnsweredHere) {
   const std::string ping = Bytes().text("/ping").text(",").str();
   desk.take(ping);
   desk.take(bundle(1, {numbered(1), ping, ping}));
-  EXPECT_EQ(desk.pongs.size(), 3u);
+  ASSERT_EQ(desk.pongs.size(), 3u);
   EXPECT_EQ(desk.pongs[0].ip, kFrom.ip);
   EXPECT_EQ(desk.pongs[0].port, kFrom.port);
   EXPECT_EQ(desk.numbers(), std::vector<double>{1});

@@ -1,0 +1,251 @@
+// What goes away and comes back: the network, a listener, a port that another program holds, a right clock. It is said
+// once, nothing else suffers, and it goes on by itself.
+#include <gtest/gtest.h>
+#include <netinet/in.h>
+#include <sys/socket.h>
+#include <sys/syscall.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <atomic>
+#include <chrono>
+#include <functional>
+#include <thread>
+
+#include "base/log.h"
+#include "osc/decode.h"
+#include "osc/network.h"
+#include "osc/osc_test_tools.h"
+#include "osc/stream_test_world.h"
+
+namespace {
+
+// the port to which nothing can be sent, as if the network there was gone; 0: all is well
+std::atomic<int> unreachable_port{0};
+
+bool unreachable(const void* to) {
+  const auto* address = static_cast<const sockaddr_in*>(to);
+  const int port = unreachable_port.load();
+  if (port == 0 || address == nullptr || ntohs(address->sin_port) != port) return false;
+  errno = ENETUNREACH;
+  return true;
+}
+
+}  // namespace
+
+// the kernel's doors as this program has them
+extern "C" ssize_t sendto(int fd, const void* data, size_t size, int flags, const sockaddr* to, socklen_t length) {
+  return unreachable(to) ? -1 : syscall(SYS_sendto, fd, data, size, flags, to, length);
+}
+extern "C" int sendmmsg(int fd, mmsghdr* messages, unsigned count, int flags) {
+  if (count > 0 && unreachable(messages[0].msg_hdr.msg_name)) return -1;
+  return static_cast<int>(syscall(SYS_sendmmsg, fd, messages, count, flags));
+}
+
+namespace limber {
+namespace {
+
+using namespace osc_test;
+
+OscOptions options_to(std::vector<std::uint16_t> ports, const std::string& more) {
+  OscOptions options;
+  options.in = *parse_osc_in("0");
+  options.out.emplace();
+  for (const std::uint16_t port : ports)
+    options.out->push_back(parse_osc_out("127.0.0.1:" + std::to_string(port) + more)->front());
+  return options;
+}
+
+bool until(const std::function<bool()>& condition) {
+  const auto late = std::chrono::steady_clock::now() + std::chrono::milliseconds(kPatienceMs);
+  while (!condition()) {
+    if (std::chrono::steady_clock::now() > late) return false;
+    std::this_thread::yield();
+  }
+  return true;
+}
+
+void publish_world(EngineLink& link) {
+  const auto spare = link.snapshots.spare();
+  *spare = test_world({{"arm", 2}});
+  link.snapshots.publish(spare);
+}
+
+int said(std::uint64_t since, const std::string& text) {
+  const auto lines = log_since(since);
+  return static_cast<int>(
+      std::ranges::count_if(lines, [&](const auto& line) { return line.text.find(text) != std::string::npos; }));
+}
+
+TEST(Outage, ANetworkThatGoesAwayAndComesBack) {
+  log_to_stderr(false);
+  const std::uint64_t before = log_newest();
+  FakeEngine engine;
+  const Client target, player;
+  const std::uint16_t port = target.end().port;
+  Network network(engine.link, options_to({port}, ",rate=1000,streams=pos"), kTestOffsets);
+  publish_world(engine.link);
+  ASSERT_TRUE(network.start().ok());
+  ASSERT_TRUE(target.receive());
+  EXPECT_EQ(engine.link.counters.unsent, 0u);
+
+  unreachable_port = port;
+  engine.say({Outgoing::To::targets, {}, {"/lost", {}}});
+  ASSERT_TRUE(until([&] { return engine.link.counters.unsent >= 20; }));
+  while (target.receive(0)) continue;
+  EXPECT_EQ(said(before, "Network is unreachable"), 2) << "once for the stream, once for the message";
+  player.send(network.bound().at(0), numbered(1));
+  EXPECT_TRUE(engine.wait_for(1)) << "what comes in is heard as ever";
+
+  unreachable_port = 0;
+  EXPECT_TRUE(target.receive()) << "frames come again by themselves";
+  engine.say({Outgoing::To::targets, {}, {"/found", {}}});
+  const std::string found = Bytes().text("/found").text(",").str();
+  std::optional<std::string> got = target.receive();
+  while (got && *got != found) got = target.receive();
+  EXPECT_TRUE(got);
+  network.stop();
+  EXPECT_EQ(said(before, "Network is unreachable"), 2);
+  log_to_stderr(true);
+}
+
+TEST(Outage, ATargetThatRefusesIsSaidOnceAndServedWhenItListens) {
+  log_to_stderr(false);
+  const std::uint64_t before = log_newest();
+  FakeEngine engine;
+  const Client innocent;
+  Endpoint refuser;
+  {
+    const Client gone;
+    refuser = gone.end();
+  }
+  Network network(engine.link, options_to({refuser.port, innocent.end().port}, ",rate=500,streams=pos"), kTestOffsets);
+  publish_world(engine.link);
+  ASSERT_TRUE(network.start().ok());
+  ASSERT_TRUE(until([&] { return engine.link.counters.unsent >= 10; }));
+  const std::string text = "OSC out 127.0.0.1:" + std::to_string(refuser.port) + ": nobody listens there";
+  EXPECT_EQ(said(before, text), 1);
+  EXPECT_EQ(said(before, "nobody listens there"), 1) << "the other one is not blamed";
+
+  // what is sent between refused datagrams arrives, all of it
+  for (int i = 0; i < 200; i++) engine.say({Outgoing::To::targets, {}, {"/n", {Arg::of(static_cast<double>(i))}}});
+  double expected = 0;
+  while (expected < 200) {
+    const auto bytes = innocent.receive();
+    ASSERT_TRUE(bytes) << "lost: " << expected;
+    const auto decoded = decode_packet(bytes->data(), bytes->size());
+    ASSERT_TRUE(decoded.ok());
+    if (decoded->messages.at(0).address != "/n") continue;
+    ASSERT_EQ(decoded->messages[0].args.at(0).number, expected);
+    expected++;
+  }
+
+  const Result<Socket> back = open_udp(refuser);
+  ASSERT_TRUE(back.ok()) << back.error();
+  pollfd p{back->fd(), POLLIN, 0};
+  EXPECT_EQ(poll(&p, 1, kPatienceMs), 1) << "who listens again is sent to at once";
+  network.stop();
+  EXPECT_EQ(said(before, text), 1);
+  log_to_stderr(true);
+}
+
+// a clock of the network thread that a test turns while it runs
+struct TurnedClock {
+  std::atomic<std::int64_t> ns{1'000'000'000};
+  std::atomic<int> readings{0};
+  NetClock clock() {
+    NetClock c;
+    c.steady = [this] {
+      readings++;
+      return ns.load();
+    };
+    return c;
+  }
+};
+
+TEST(Outage, ATakenPortIsHadWhenItIsFree) {
+  log_to_stderr(false);
+  const std::uint64_t before = log_newest();
+  FakeEngine engine;
+  auto holder = std::make_unique<Client>();
+  const Endpoint wanted = holder->end();
+  OscOptions options = options_to({}, "");
+  options.in = {{"127.0.0.1", wanted.port}};
+  options.optional = true;
+  TurnedClock hand;
+  Network network(engine.link, options, kTestOffsets, hand.clock());
+  ASSERT_TRUE(network.start().ok());
+  EXPECT_EQ(network.lines().at(0), "OSC in off");
+  const auto try_again = [&] {
+    hand.ns += 1'000'000'000;
+    engine.link.wake_network();
+  };
+  // some rounds of its loop, in each of which it is time to try again
+  const int readings = hand.readings;
+  ASSERT_TRUE(until([&] {
+    try_again();
+    return hand.readings >= readings + 100;
+  }));
+  holder.reset();
+  ASSERT_TRUE(until([&] {
+    try_again();
+    return !network.bound().empty();
+  }));
+  EXPECT_EQ(network.bound().at(0), wanted);
+  EXPECT_EQ(network.lines().at(0), "OSC in " + endpoint_text(wanted));
+  const Client player;
+  player.send(wanted, numbered(7));
+  ASSERT_TRUE(engine.wait_for(1));
+  EXPECT_EQ(engine.commands.at(0).messages.at(0).args.at(0).number, 7);
+  network.stop();
+  EXPECT_EQ(said(before, "Address already in use"), 1) << "not at each try";
+  EXPECT_EQ(said(before, "OSC in " + endpoint_text(wanted)), 1);
+  log_to_stderr(true);
+}
+
+// a tablet's clock runs an hour ahead, then an hour behind, then right: what it sends acts at once, acts at once, waits
+TEST(Outage, AClockThatIsAnHourWrong) {
+  log_to_stderr(false);
+  constexpr std::uint64_t kSecond = std::uint64_t{1} << 32;
+  constexpr std::uint64_t kHour = 3600 * kSecond;
+  const std::uint64_t before = log_newest();
+  FakeEngine engine;
+  HandClock hand;
+  const NetClock clock = hand.clock();
+  Receiver receiver(engine.link, {}, {}, clock);
+  const auto take = [&](std::uint64_t tag, std::uint32_t number) {
+    const std::string bytes = bundle(tag, {numbered(number)});
+    receiver.take(bytes.data(), bytes.size(), {0xc0a80107u, 5000});
+    receiver.release_due();
+    engine.collect();
+    return engine.count();
+  };
+  std::size_t count = 0;
+  for (std::uint32_t i = 0; i < 100; i++) EXPECT_EQ(take(hand.ntp + kHour + i * kSecond, i), ++count);
+  EXPECT_EQ(said(before, "a bundle from 192.168.1.7:5000 is dated more than 10 s ahead: applied now"), 1);
+  for (std::uint32_t i = 0; i < 100; i++) EXPECT_EQ(take(hand.ntp - kHour + i * kSecond, i), ++count);
+  EXPECT_EQ(said(before, "is dated more than 10 s ahead"), 1);
+  EXPECT_EQ(take(hand.ntp + kSecond, 1), count) << "right again: it waits";
+  hand.turn(1);
+  receiver.release_due();
+  engine.collect();
+  EXPECT_EQ(engine.count(), ++count);
+
+  // this machine's own clock is put an hour forward while something waits: it comes; then back again: so does that
+  EXPECT_EQ(take(hand.ntp + 5 * kSecond, 2), count);
+  hand.ntp += kHour;
+  receiver.release_due();
+  engine.collect();
+  EXPECT_EQ(engine.count(), ++count);
+  EXPECT_EQ(take(hand.ntp + 5 * kSecond, 3), count);
+  hand.ntp -= kHour;
+  hand.turn(10);
+  receiver.release_due();
+  engine.collect();
+  EXPECT_EQ(engine.count(), ++count) << "ten seconds at the most";
+  EXPECT_EQ(engine.link.counters.dropped, 0u);
+  log_to_stderr(true);
+}
+
+}  // namespace
+}  // namespace limber

@@ -1,0 +1,79 @@
+// The bytes that real clients sent while they played tests/clients/score.lua, kept in tests/osc/recorded: each plays it
+// again. Each file begins with the client's version and its command.
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+
+#include "base/log.h"
+#include "engine/show.h"
+#include "osc/bad_packets.h"
+#include "osc/receiver.h"
+
+namespace limber::osc_test {
+namespace {
+
+const std::filesystem::path kTests = std::filesystem::path(LIMBER_SOURCE_DIR) / "tests";
+
+struct Recording {
+  std::string head;
+  std::vector<std::string> datagrams;
+};
+
+Recording read_recording(const std::filesystem::path& path) {
+  Recording recording;
+  std::ifstream file(path);
+  for (std::string line; std::getline(file, line);) {
+    if (line.starts_with("#")) {
+      recording.head += line + "\n";
+    } else {
+      recording.datagrams.push_back(from_hex(line));
+    }
+  }
+  return recording;
+}
+
+EngineOptions options() {
+  EngineOptions options = engine_test::fast_options((kTests / "clients" / "score.lua").string());
+  options.print = false;
+  return options;
+}
+
+class Recorded : public testing::TestWithParam<const char*> {};
+
+TEST_P(Recorded, PlaysTheScoreAgain) {
+  log_to_stderr(false);
+  const Recording recording = read_recording(kTests / "osc" / "recorded" / (std::string(GetParam()) + ".hex"));
+  ASSERT_GE(recording.datagrams.size(), 9u);
+  engine_test::Show show(options());
+  const NetClock clock;
+  std::vector<Outgoing> errors;
+  Receiver receiver(show.link, {}, {.error = [&](const Outgoing& out) { errors.push_back(out); }}, clock);
+  const std::uint64_t before = log_newest();
+  for (const std::string& datagram : recording.datagrams) {
+    receiver.take(datagram.data(), datagram.size(), {0x7f000001, 5000});
+    receiver.release_due();
+    show.ticks(1);
+  }
+  EXPECT_EQ(show.link.counters.malformed + show.link.counters.refused + show.link.counters.unknown, 0u);
+  EXPECT_TRUE(errors.empty());
+  std::string said;
+  for (const LogLine& line : log_since(before)) said += line.text + "\n";
+  EXPECT_NE(said.find("score\t-3\t0.75\t0.25\t0.5\tfalse\twild\ttrue\t4.5\tvec3(1, 2, 3)"), std::string::npos) << said;
+  EXPECT_EQ(show.read("/scene/wind"), 4.5);
+  const std::vector<std::string> out = show.outbox();
+  EXPECT_EQ(std::ranges::count(out, "/score 4.5"), 1);
+  EXPECT_TRUE(recording.head.starts_with("# " + std::string(GetParam()))) << recording.head;
+  log_to_stderr(true);
+}
+
+INSTANTIATE_TEST_SUITE_P(All, Recorded,
+                         testing::Values("sclang", "npm-osc", "npm-node-osc", "npm-osc-js", "pd", "liblo"),
+                         [](const auto& info) {
+                           std::string name(info.param);
+                           std::erase(name, '-');
+                           return name;
+                         });
+
+}  // namespace
+}  // namespace limber::osc_test
