@@ -18,7 +18,8 @@ class Playing {
 
   /// Another program beside it, in the same runtime folder.
   std::vector<std::string> words(std::vector<std::string> args) const {
-    if (!args.empty() && args[0] == "play") args.insert(args.end(), {"--osc-in", "off", "--osc-out", "off", "--query", "off"});
+    if (!args.empty() && args[0] == "play")
+      args.insert(args.end(), {"--osc-in", "off", "--osc-out", "off", "--query", "off"});
     return limber(std::move(args), environment());
   }
   std::vector<std::string> environment() const {
