@@ -16,6 +16,9 @@ namespace {
 
 // while the next tick is further away than this, commands take effect without waiting for it
 constexpr auto kLongestWait = std::chrono::milliseconds(50);
+// of a tick's work: a refusal or an answer, and what the scene's handlers may hear
+constexpr int kTextWork = 7;
+constexpr int kHeardWork = 3;
 
 // the time since the last lap
 class Stopwatch {
@@ -191,7 +194,6 @@ void Engine::pass(bool may_step) {
   Stopwatch watch;
   requests_.serve();
   rerun();
-  const std::uint64_t asks = link_.image_asks.load();  // an image holds whatever had come when it was asked for
   drain();
   times_.commands = watch.lap();
 
@@ -216,7 +218,7 @@ void Engine::pass(bool may_step) {
 
   if (stage.world.take_reset_request()) reset();
   publish();
-  make_image(asks);
+  make_image(asks_);
   if (was_paused_ != stage_->transport.paused()) send_transport();
   times_.snapshot = watch.lap();
   if (stage_->scene != nullptr) stage_->scene->collect_garbage();
@@ -237,10 +239,19 @@ void Engine::make_image(std::uint64_t asks) {
 
 void Engine::drain() {
   stage_->dispatch.begin_tick();
-  link_.inbox.drain(commands_);
-  for (Command& command : commands_) {
-    for (Message& message : command.messages) execute(message, command.origin);
-    if (command.evaluate != nullptr) evaluate(*command.evaluate);
+  bool taken = false;
+  for (int work = kTickWork; work > 0;) {
+    if (next_command_ < commands_.size()) {
+      Command& command = commands_[next_command_++];
+      for (Message& message : command.messages) work -= execute(message, command.origin);
+      if (command.evaluate != nullptr) evaluate(*command.evaluate);
+      continue;
+    }
+    asks_ = asks_of_batch_;
+    if (std::exchange(taken, true)) break;
+    asks_of_batch_ = link_.image_asks.load();  // an image holds whatever had come when it was asked for
+    link_.inbox.drain(commands_);
+    next_command_ = 0;
   }
 }
 
@@ -259,7 +270,7 @@ void Engine::evaluate(const Evaluate& wish) {
   wish.answer(std::move(said));
 }
 
-void Engine::execute(Message& message, const Origin& origin) {
+int Engine::execute(Message& message, const Origin& origin) {
   Outcome outcome = stage_->dispatch.execute(message);
   if (outcome.clamped != nullptr) {
     link_.counters.clamped.fetch_add(1, std::memory_order_relaxed);
@@ -277,13 +288,18 @@ void Engine::execute(Message& message, const Origin& origin) {
     refuse(message.address, origin, outcome.error);
   }
   const bool unknown = outcome.kind == Outcome::Kind::unknown;
+  const bool listens = stage_->scene != nullptr && stage_->scene->listens();
+  const bool applied = outcome.kind == Outcome::Kind::applied;
+  const int work =
+      1 + static_cast<int>(stage_->dispatch.written().size()) + (applied ? 0 : kTextWork) + (listens ? kHeardWork : 0);
   // the scene's handlers hear it after every message of the tick took effect
-  if (stage_->scene != nullptr && stage_->scene->listens()) {
+  if (listens) {
     heard_.push_back({std::move(message), origin, unknown, std::move(outcome.error)});
   } else if (unknown) {
     link_.counters.unknown.fetch_add(1, std::memory_order_relaxed);
     refuse(message.address, origin, outcome.error);
   }
+  return work;
 }
 
 void Engine::call_handlers() {

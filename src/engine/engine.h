@@ -47,6 +47,10 @@ struct PhaseTimes {
 
 class Engine : private ScriptHost {
  public:
+  /// Work that messages may make in one tick: 1 each and 1 a value, more where a text is made or the scene listens. The
+  /// rest waits for the next ticks, in its order, so that a flood does not hold up time. A datagram is never split.
+  static constexpr int kTickWork = 8192;
+
   /// The link outlives the engine, and nobody calls its `wake_engine` while the engine goes.
   Engine(EngineLink& link, EngineOptions options);
   ~Engine() override;
@@ -98,7 +102,8 @@ class Engine : private ScriptHost {
   void rerun();
   bool between_ticks(const std::function<void()>& work);
   void drain();
-  void execute(Message& message, const Origin& origin);
+  /// What the message cost of kTickWork.
+  int execute(Message& message, const Origin& origin);
   void evaluate(const Evaluate& wish);
   void refuse(std::string_view address, const Origin& origin, std::string_view error);
   void call_handlers();
@@ -130,6 +135,9 @@ class Engine : private ScriptHost {
     std::string error;
   };
   std::vector<Command> commands_;
+  std::size_t next_command_ = 0;          // the first that is yet to be done
+  std::uint64_t asks_of_batch_ = 0;       // images asked for before commands_ was taken
+  std::uint64_t asks_ = 0;                // images that may be made: all that came before was done
   std::vector<Heard> heard_;              // messages of this tick, for the scene's handlers
   std::vector<const Row*> said_clamped_;  // rows whose clamping was said
   std::uint64_t faults_ = 0;

@@ -18,7 +18,9 @@ namespace limber {
 struct EngineLink {
   static constexpr std::size_t kMostItems = 65536;
   static constexpr std::size_t kMostBytes = std::size_t{64} << 20;  ///< A datagram of 16 KiB may grow to 0.8 MiB.
-  Inbox<Command> inbox{kMostItems, kMostBytes};
+  /// Datagrams that wait: what is slow to carry out takes some twenty ticks then (Engine::kTickWork).
+  static constexpr std::size_t kMostCommands = 16384;
+  Inbox<Command> inbox{kMostCommands, kMostBytes};
   Inbox<Outgoing> outbox{kMostItems, kMostBytes};
   Inbox<Outgoing> query_outbox{kMostItems, kMostBytes};  ///< Answers to Hand::query.
   Latest<Snapshot> snapshots;

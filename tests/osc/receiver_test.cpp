@@ -173,15 +173,15 @@ TEST(Receiver, TimeTagsInOrder) {
   log_to_stderr(true);
 }
 
-// the inbox holds 65536 commands; what comes on top is dropped and counted, in messages
+// the inbox holds so many commands; what comes on top is dropped and counted, in messages
 TEST(Receiver, FullInboxCountsWhatItDrops) {
   log_to_stderr(false);
   Desk desk;
-  for (int i = 0; i < 65536; i++) desk.take(numbered(1));
+  for (std::size_t i = 0; i < EngineLink::kMostCommands; i++) desk.take(numbered(1));
   EXPECT_EQ(desk.engine.link.counters.dropped, 0u);
   desk.take(bundle(1, {numbered(2), numbered(2), numbered(2)}));
   EXPECT_EQ(desk.engine.link.counters.dropped, 3u);
-  EXPECT_EQ(desk.numbers().size(), 65536u);
+  EXPECT_EQ(desk.numbers().size(), EngineLink::kMostCommands);
   desk.take(numbered(7));
   EXPECT_EQ(desk.numbers().back(), 7);
   log_to_stderr(true);
