@@ -58,7 +58,7 @@ void save(const Folder& folder, std::string_view robot, int arms, int version) {
 // the show as it is played, with its watching thread, and who listens to it
 class Played {
  public:
-  explicit Played(const std::string& scene) : engine_(link_, options_of(scene)), watch_(link_, engine_) {
+  explicit Played(const std::string& scene) : engine_(link_, options_of(scene)), watch_(link_, engine_, scene) {
     started_ = engine_.start();
     if (!started_) return;
     sim_ = std::thread([this] { engine_.run(); });

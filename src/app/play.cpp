@@ -235,11 +235,12 @@ Result<void> open_ports(const EngineLink& link, const OscOptions& osc, const Que
 int play_scene(const PlayOptions& options, EngineOptions engine_options, const OscOptions& osc,
                const QueryWish& query_wish, const sigset_t& signals) {
   EngineLink link;
+  const std::string scene_file = engine_options.scene;
   Engine engine(link, std::move(engine_options));
   Network network(link, osc, live_offsets());
   ConsoleServer console(link, {.folder = "", .scene = printable(options.scene)});
   std::optional<SceneWatch> scene_watch;
-  if (!options.fast || options.watch) scene_watch.emplace(link, engine);
+  if (!options.fast || options.watch) scene_watch.emplace(link, engine, scene_file);
   QueryServer query(link, query_doors(network, osc.allow));
   bool interrupted = false;
   {

@@ -8,12 +8,32 @@
 
 #include <algorithm>
 #include <array>
+#include <filesystem>
 #include <utility>
+
+#include <fmt/format.h>
+
+#include "base/log.h"
+#include "base/text.h"
 
 namespace limber {
 
-SceneWatch::SceneWatch(EngineLink& link, Engine& engine, FileWatch::Way way)
-    : link_(link), engine_(engine), way_(way), wake_(eventfd(0, EFD_NONBLOCK | EFD_CLOEXEC)) {
+namespace {
+
+constexpr std::size_t kMostScenes = 1000;  // that are listed
+
+}  // namespace
+
+SceneWatch::SceneWatch(EngineLink& link, Engine& engine, const std::string& scene, FileWatch::Way way)
+    : link_(link),
+      engine_(engine),
+      folder_(std::filesystem::absolute(scene).parent_path()),
+      way_(way),
+      wake_(eventfd(0, EFD_NONBLOCK | EFD_CLOEXEC)) {
+  link_.ask_scenes = [this](const Message& message, const Origin& origin) {
+    if (!wishes_.push({{message}, origin})) return refuse(message, origin, "too many questions about scenes at once");
+    wake();
+  };
   link_.rerun_scene = [this] {
     rerun_.store(true);
     wake();
@@ -29,6 +49,7 @@ void SceneWatch::stop() {
   wake();
   if (thread_.joinable()) thread_.join();
   link_.rerun_scene = nullptr;
+  link_.ask_scenes = nullptr;
   if (wake_ >= 0) close(std::exchange(wake_, -1));
 }
 
@@ -40,15 +61,66 @@ void SceneWatch::wake() const {
 void SceneWatch::run() {
   pthread_setname_np(pthread_self(), "limber-watch");
   FileWatch files(way_);
+  std::vector<Command> wishes;
   files.watch(engine_.files(), FileWatch::Time::clock::now());
   while (!stop_.load()) {
     sleep(files);
     const bool saved = !files.poll(FileWatch::Time::clock::now()).empty();
     const bool rerun = rerun_.exchange(false);
-    if (stop_.load() || !(saved || rerun)) continue;
-    engine_.reload(!saved);
+    bool other = false;
+    wishes_.drain(wishes);
+    for (const Command& wish : wishes) other = (!stop_.load() && serve(wish.messages.front(), wish.origin)) || other;
+    if (stop_.load() || !(saved || rerun || other)) continue;
+    // one that has just begun has read what there is
+    if (!other) engine_.reload(!saved);
     files.watch(engine_.files(), FileWatch::Time::clock::now());
   }
+}
+
+// names of the folder's scenes, without .lua, in the order of the alphabet
+std::vector<std::string> SceneWatch::scenes() const {
+  std::vector<std::string> names;
+  std::error_code ignored;
+  for (const auto& entry : std::filesystem::directory_iterator(folder_, ignored)) {
+    const std::filesystem::path& file = entry.path();
+    if (file.extension() == ".lua" && entry.is_regular_file(ignored) && names.size() < kMostScenes)
+      names.push_back(file.stem());
+  }
+  std::ranges::sort(names);
+  return names;
+}
+
+// whether another scene plays now
+bool SceneWatch::serve(const Message& wish, const Origin& origin) {
+  const std::vector<std::string> names = scenes();
+  if (wish.args.empty()) {
+    Message answer{"/list/scenes", {}};
+    for (const std::string& name : names) answer.args.push_back(Arg::of(name));
+    if (names.empty()) answer.args.push_back(Arg::of(""));
+    link_.push_out({Outgoing::To::sender, origin, std::move(answer)});
+    return false;
+  }
+  std::string name = wish.args[0].text;
+  if (name.ends_with(".lua")) name.resize(name.size() - 4);
+  if (std::ranges::find(names, name) == names.end()) {
+    refuse(wish, origin,
+           fmt::format("there is no scene '{}' in {}{}", printable(name), folder_, name_hint(name, names)));
+    return false;
+  }
+  const Result<void> changed = engine_.change_scene((std::filesystem::path(folder_) / (name + ".lua")).string());
+  if (changed.ok()) {
+    log_info("{} plays from its start", name);
+    link_.push_out({Outgoing::To::sender, origin, {"/transport/playing", {Arg::of(name)}}});
+  } else {
+    refuse(wish, origin, changed.error());
+  }
+  return changed.ok();
+}
+
+void SceneWatch::refuse(const Message& wish, const Origin& origin, const std::string& why) {
+  link_.counters.refused.fetch_add(1, std::memory_order_relaxed);
+  log_error("{}: {}", printable(wish.address), why);
+  link_.push_out({Outgoing::To::error, origin, error_message(wish.address, why)});
 }
 
 void SceneWatch::sleep(const FileWatch& files) const {

@@ -1,19 +1,23 @@
-// SceneWatch: the thread that runs the scene beside the show, when one of its files was saved or a parameter with
-// `rerun` has changed.
+// SceneWatch: the thread that runs a scene beside the show, when one of its files was saved, a parameter with `rerun`
+// has changed, or another scene of the folder is asked for.
 #pragma once
 
 #include <atomic>
+#include <string>
 #include <thread>
+#include <vector>
 
 #include "app/file_watch.h"
+#include "base/inbox.h"
 #include "engine/engine.h"
 
 namespace limber {
 
 class SceneWatch {
  public:
-  /// Made before the engine starts; `link` and `engine` outlive it.
-  SceneWatch(EngineLink& link, Engine& engine, FileWatch::Way way = FileWatch::Way::events);
+  /// Made before the engine starts; `link` and `engine` outlive it. `scene`: the file that plays; its folder is the
+  /// only one that scenes are taken from.
+  SceneWatch(EngineLink& link, Engine& engine, const std::string& scene, FileWatch::Way way = FileWatch::Way::events);
   ~SceneWatch() { stop(); }
   SceneWatch(const SceneWatch&) = delete;
   SceneWatch& operator=(const SceneWatch&) = delete;
@@ -25,12 +29,17 @@ class SceneWatch {
 
  private:
   void run();
+  bool serve(const Message& wish, const Origin& origin);
+  std::vector<std::string> scenes() const;
+  void refuse(const Message& wish, const Origin& origin, const std::string& why);
   void sleep(const FileWatch& files) const;
   void wake() const;
 
   EngineLink& link_;
   Engine& engine_;
+  std::string folder_;
   FileWatch::Way way_;
+  Inbox<Command> wishes_{64, std::size_t{1} << 16};  // messages about scenes
   int wake_ = -1;
   std::atomic<bool> stop_{false};
   std::atomic<bool> rerun_{false};

@@ -51,27 +51,34 @@ std::vector<Message> receive(int fd, double seconds) {
 }
 
 struct Heard {
-  bool whole = false;  // nothing more will come
+  bool last = false;   // of what is answered at once nothing more will come
+  bool whole = false;  // nor anything else
   bool refused = false;
 };
 
-Heard show_answers(int fd, double wait, const std::function<void()>& ask) {
+// `late`: what is waited for comes from beside the simulation, later than answers to what was asked behind it
+Heard show_answers(int fd, double wait, bool late, const std::function<void()>& ask) {
   Heard answers;
   int asked = 1;
+  bool heard = !late;
   ask();
   const double end = clock_seconds() + wait;
   while (!answers.whole && clock_seconds() < end) {
     for (const Message& message : receive(fd, end - clock_seconds())) {
       if (message.address == kLast) {
-        answers.whole = asked == 2;
+        answers.last = asked == 2;
         if (asked++ == 1) ask();
-      } else if (message.address == "/error" && message.args.size() == 2) {
+        continue;
+      }
+      heard = true;
+      if (message.address == "/error" && message.args.size() == 2) {
         answers.refused = true;
         fmt::print(stderr, "limber: {}: {}\n", printable(message.args[0].text), printable(message.args[1].text));
       } else {
         fmt::print("{}\n", message_text(message));
       }
     }
+    answers.whole = answers.last && heard;
   }
   return answers;
 }
@@ -110,9 +117,10 @@ int send_command(const SendCommand& command) {
   }
   if (command.wait <= 0) return kFine;
   const auto ask = [&] { (void)send_message(socket->fd(), *to, {"/get", {Arg::of(kLast)}}); };
-  const Heard answers = show_answers(socket->fd(), command.wait, ask);
+  const bool late = message.address.starts_with("/transport/scene") || message.address.starts_with("/list/scenes");
+  const Heard answers = show_answers(socket->fd(), command.wait, late, ask);
   if (answers.refused) return kInput;
-  if (!answers.whole) {
+  if (!answers.last) {
     return fail(
         kMachine,
         fmt::format("send: nobody answers at {}; is Limber playing there? (--wait 0 asks for no answer)", command.to));

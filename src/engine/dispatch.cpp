@@ -35,6 +35,8 @@ constexpr Irregular kIrregulars[] = {
     {"/list/behaviors", "body", "Answers with the body and its behaviours' names, in the order in which they act."},
     {"/list/groups", "", "Answers with the names of the group behaviours."},
     {"/list/shapes", "", "Answers with the names of the scene's shapes."},
+    {"/list/scenes", "", "Answers with the names of the scenes in the folder of the one that plays."},
+    {"/transport/scene", "scene", "Another scene of that folder plays from its start; the performer's values go."},
 };
 
 // the seed's that took a joint's frames apart; refused with the reason
@@ -78,10 +80,12 @@ Dispatch::Dispatch(World& world, std::span<const Table* const> more) : world_(wo
   for (const Table* table : named_classes()) add_class(*table);
   for (const Table* table : more) add_class(*table);
   for (const Irregular& irregular : kIrregulars) {
+    const bool scenes = irregular.address.ends_with("/scenes") || irregular.address.ends_with("/scene");
     const bool lists = irregular.address.starts_with("/list/");
     const bool behavior = irregular.address.starts_with("/physics/behavior/");
     const bool camera = irregular.address.starts_with("/visuals/camera/");
-    by_name_[std::string(irregular.address)].irregular = lists                         ? &Dispatch::list
+    by_name_[std::string(irregular.address)].irregular = scenes                        ? &Dispatch::scenes
+                                                         : lists                       ? &Dispatch::list
                                                          : behavior                    ? &Dispatch::behavior_parameter
                                                          : camera                      ? &Dispatch::projection
                                                          : irregular.address == "/get" ? &Dispatch::get
@@ -329,6 +333,19 @@ Outcome Dispatch::projection(const Message& message) {
 Outcome Dispatch::list(const Message& message) {
   std::array<char, 96> buffer;
   return answers_.list(plain_address(message.address, buffer).substr(std::string_view("/list/").size()), message.args);
+}
+
+Outcome Dispatch::scenes(const Message& message) {
+  std::array<char, 96> buffer;
+  if (plain_address(message.address, buffer).starts_with("/list/")) {
+    if (!message.args.empty()) return Outcome::refused("takes no arguments");
+  } else if (message.args.size() != 1 || message.args[0].kind == Arg::Kind::nil || message.args[0].is_numeric()) {
+    return Outcome::refused("takes the name of a scene; /list/scenes answers with all");
+  }
+  Outcome outcome;
+  outcome.kind = Outcome::Kind::scenes;
+  outcome.error = "scenes are changed while a show plays (limber play, without --fast)";  // for who can't
+  return outcome;
 }
 
 Outcome Dispatch::get(const Message& message) { return answers_.get(message.args); }

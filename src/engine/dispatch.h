@@ -84,6 +84,7 @@ class Dispatch {
   Outcome projection(const Message& message);
   Outcome behavior_parameter(const Message& message);
   Outcome list(const Message& message);
+  Outcome scenes(const Message& message);
   Outcome get(const Message& message);
   Outcome gone(const Message& message);
 

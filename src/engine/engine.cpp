@@ -95,18 +95,26 @@ void Engine::reset() {
     return;
   }
   reload_.begin(*fresh, scene_options);
-  for (const char* state : {"seed", "paused", "speed"}) {
-    const Row& row = World::table().at(state);
-    if (row.name == "seed" && !scene_options.seed) continue;
-    (void)fresh->store.set(fresh->world.id(), row, {stage_->store.values(before.id(), row), 1});
-  }
-  faults_ += before.health_events();
-  stage_ = std::move(fresh);
-  images_.forget_store();
+  if (scene_options.seed) keep_state(*fresh, "seed");
+  take_stage(std::move(fresh));
   if (stage_->scene != nullptr) stage_->scene->arm();  // while both were there, the new one ran interpreted
   replay_hand();
   begin_show();
   send_transport();
+}
+
+// what belongs to the hour, not to the scene
+void Engine::keep_state(Stage& fresh, std::string_view name) const {
+  const Row& row = World::table().at(name);
+  (void)fresh.store.set(fresh.world.id(), row, {stage_->store.values(stage_->world.id(), row), 1});
+}
+
+std::unique_ptr<Stage> Engine::take_stage(std::unique_ptr<Stage> fresh) {
+  for (const char* state : {"paused", "speed"}) keep_state(*fresh, state);
+  faults_ += stage_->world.health_events();
+  std::swap(stage_, fresh);
+  images_.forget_store();
+  return fresh;
 }
 
 // what the performer set and the scene still has; but what a reload has given back since is as the scene says
@@ -272,6 +280,7 @@ void Engine::evaluate(const Evaluate& wish) {
 
 int Engine::execute(Message& message, const Origin& origin) {
   Outcome outcome = stage_->dispatch.execute(message);
+  if (outcome.kind == Outcome::Kind::scenes && !link_.ask_scenes) outcome.kind = Outcome::Kind::refused;
   if (outcome.clamped != nullptr) {
     link_.counters.clamped.fetch_add(1, std::memory_order_relaxed);
     say_clamped(message, *outcome.clamped);
@@ -287,6 +296,7 @@ int Engine::execute(Message& message, const Origin& origin) {
     faults_++;
     refuse(message.address, origin, outcome.error);
   }
+  if (outcome.kind == Outcome::Kind::scenes) link_.ask_scenes(message, origin);
   const bool unknown = outcome.kind == Outcome::Kind::unknown;
   const bool listens = stage_->scene != nullptr && stage_->scene->listens();
   const bool applied = outcome.kind == Outcome::Kind::applied;

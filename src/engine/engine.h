@@ -73,6 +73,9 @@ class Engine : private ScriptHost {
   void reload(bool again = false);
   /// The same at once, on the simulation's own thread. [sim]
   Reload::End reload_now(bool again = false);
+  /// Runs another scene's file beside the show; it plays from its start instead, between two ticks, without what the
+  /// performer has set. An error: what is wrong with it, and the show plays on. [any but sim, while run() goes]
+  Result<void> change_scene(const std::string& file);
   /// Files that are worth a reload when they change. [any]
   std::vector<SourceFile> files() const { return reload_.files(); }
 
@@ -96,6 +99,9 @@ class Engine : private ScriptHost {
   /// A tick; or, when `may_step` is false, only what happens while time stands still.
   void pass(bool may_step);
   void reset();
+  void keep_state(Stage& fresh, std::string_view name) const;
+  /// The stage becomes the show; the answer is the one before.
+  std::unique_ptr<Stage> take_stage(std::unique_ptr<Stage> fresh);
   void replay_hand();
   Reload::End take(Draft& draft);
   void begin_show();

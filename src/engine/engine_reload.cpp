@@ -47,6 +47,25 @@ Reload::End Engine::take(Draft& draft) {
   return end;
 }
 
+Result<void> Engine::change_scene(const std::string& file) {
+  auto fresh = std::make_unique<Stage>(link_);
+  const Result<void> ran = fresh->run_beside(file, *this, options_.scene_options);
+  if (!ran) return ran;
+  const bool done = between_ticks([&] {
+    options_.scene = file;
+    hand_.clear();
+    reload_.begin(*fresh, options_.scene_options, file);
+    if (stage_->scene != nullptr) stage_->scene->disarm();
+    fresh = take_stage(std::move(fresh));
+    stage_->begin(*this);
+    scene_seed_ = stage_->world.seed();
+    begin_show();
+    send_transport();
+  });
+  if (!done) return Error{"the show has ended"};
+  return ran;  // the stage before goes here, beside the show
+}
+
 void Engine::rerun() {
   if (!reload_.take_rerun(*stage_)) return;
   if (link_.rerun_scene && !options_.fast) {

@@ -27,6 +27,7 @@ class PerformerHand {
   /// All of them, the oldest first: done again in this order they leave what the performer left.
   std::vector<HandStep> in_order() const;
   std::size_t size() const { return values_.size(); }
+  void clear() { *this = {}; }
 
  private:
   struct Value {

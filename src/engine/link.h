@@ -38,6 +38,9 @@ struct EngineLink {
   /// Called when a parameter with `rerun` has changed: somebody calls Engine::reload(true), on a thread of his own.
   /// Null: the simulation runs the scene itself. Set before start.
   std::function<void()> rerun_scene;
+  /// Called with a message about the show's scenes; somebody who may read files answers it, and may call
+  /// Engine::change_scene(), on a thread of his own. Null: scenes can't be changed. Set before start.
+  std::function<void(const Message&, const Origin&)> ask_scenes;
   /// Called after something was put into `inbox`, so that a paused engine need not poll. Set by the engine.
   std::function<void()> wake_engine = [] {};
 

@@ -24,6 +24,11 @@ void Reload::begin(const Stage& stage, const SceneOptions& options) {
   if (stage.scene != nullptr) say_mended();
 }
 
+void Reload::begin(const Stage& stage, const SceneOptions& options, const std::string& file) {
+  file_ = file;
+  begin(stage, options);
+}
+
 DraftOrder Reload::order(const Stage& stage, bool again) {
   DraftOrder order{file_, options_, {}, description_};
   if (stage.scene == nullptr) return order;

@@ -22,15 +22,33 @@ struct Stage {
 
   /// Runs the scene's file; without one the world stays empty.
   Result<void> run(const std::string& file, ScriptHost& host, const SceneOptions& options) {
+    hear_faults(host);
+    if (file.empty()) return {};
+    scene = std::make_unique<Scene>(world, host, options);
+    return scene->run(file);
+  }
+
+  /// The same beside another stage that plays; begin() has it heard and compiled once that one rests. [any]
+  Result<void> run_beside(const std::string& file, ScriptHost& host, const SceneOptions& options) {
+    scene = std::make_unique<Scene>(world, host, options);
+    const RunInputs none;
+    Result<void> ran = scene->run(file, &none);
+    if (ran) scene->prepare();
+    return ran;
+  }
+  void begin(ScriptHost& host) {
+    hear_faults(host);
+    scene->become_live(
+        world, [](NodeId id) { return id; }, nullptr);
+  }
+
+  void hear_faults(ScriptHost& host) {
     world.behaviors().on_fault([&host](const Behavior& behavior) {
       const BehaviorFault& fault = behavior.fault();
       const std::string path = behavior.store().path(behavior.id());
       if (fault.file.empty()) return host.script_error(path, fault.line, path + ": " + fault.text);
       host.script_error(fault.file, fault.line, fault.text + "\nof " + path);
     });
-    if (file.empty()) return {};
-    scene = std::make_unique<Scene>(world, host, options);
-    return scene->run(file);
   }
 
   Store store;

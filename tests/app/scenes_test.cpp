@@ -1,0 +1,100 @@
+// Another scene of the folder plays when OSC asks for it.
+#include "app/program.h"
+#include "console/private_folder.h"
+
+namespace limber::app_test {
+namespace {
+
+// a show of several scenes; the first plays, with an OSC port that the system chooses
+struct Evening {
+  Evening()
+      : running(limber({first, "--osc-in", "127.0.0.1:0", "--osc-out", "off", "--query", "off"},
+                       {"env", "XDG_RUNTIME_DIR=" + runtime.path(), "TMPDIR=" + runtime.path()})) {
+    EXPECT_TRUE(running.wait_for("playing headless")) << running.err();
+    const std::string mark = "OSC in ";
+    const std::size_t at = running.err().find(mark) + mark.size();
+    in = running.err().substr(at, running.err().find('\n', at) - at);
+  }
+  Ran send(std::vector<std::string> words) const {
+    words.insert(words.begin(), "send");
+    words.insert(words.end(), {"--to", in});
+    return run(std::move(words));
+  }
+  Folder folder;
+  PrivateFolder runtime;
+  std::string first = folder.file("scripts/first.lua",
+                                  "params { { 'wind', 1, max = 9 } }\n"
+                                  "sim:add_body('only_here')\n"
+                                  "state.times = (state.times or 0) + 1\n");
+  std::string second = folder.file("scripts/second.lua",
+                                   "sim.gravity = vec3(0, 0, -3)\n"
+                                   "sim:add_body('a') sim:add_body('b')\n"
+                                   "sim:on_start(function() print('second begins', state.times) end)\n"
+                                   "osc:on('/who', function() osc:reply('/i/am', 'second', sim.tick) end)\n");
+  std::string broken = folder.file("scripts/broken.lua", "sim:add_body('half')\nsim.gravty = 1\n");
+  std::string library = folder.file("scripts/lib/no_scene.lua", "");
+  Running running;
+  std::string in;
+};
+
+TEST(Scenes, AnotherOnePlaysFromItsStart) {
+  Evening show;
+  EXPECT_EQ(show.send({"/list/scenes", "--wait", "30"}).out, "/list/scenes broken first second\n");
+  EXPECT_EQ(show.send({"/physics/sim/speed", "2"}).code, 0);
+  EXPECT_EQ(show.send({"/physics/sim/substeps", "7"}).code, 0);
+  const Ran changed = show.send({"/transport/scene", "second", "--wait", "30"});
+  EXPECT_EQ(changed.out, "/transport/playing second\n") << changed.err;
+  ASSERT_TRUE(show.running.wait_for("second begins\tnil\n", true)) << "it has a state of its own";
+  EXPECT_EQ(show.send({"/list/bodies"}).out, "/list/bodies a b\n");
+  EXPECT_TRUE(show.send({"/who"}).out.starts_with("/i/am second "));
+  EXPECT_EQ(show.send({"/get", "/physics/sim/gravity"}).out, "/physics/sim/gravity 0 0 -3\n");
+  EXPECT_EQ(show.send({"/get", "/physics/sim/substeps"}).out, "/physics/sim/substeps 4\n") << "the hand's values go";
+  EXPECT_EQ(show.send({"/get", "/physics/sim/speed"}).out, "/physics/sim/speed 2\n") << "the hour's stay";
+  EXPECT_EQ(show.send({"/scene/wind", "3"}).code, 1) << "nothing of the first one is left";
+  // it is the one that is watched now, and that a reset starts again
+  show.folder.file("scripts/second.lua", "sim:add_body('c')\nprint('second again')\n");
+  EXPECT_TRUE(show.running.wait_for("second again\n", true));
+  EXPECT_EQ(show.send({"/transport/reset"}).code, 0);
+  EXPECT_EQ(show.send({"/list/bodies"}).out, "/list/bodies c\n");
+  EXPECT_EQ(show.send({"/get", "/physics/sim/substeps"}).out, "/physics/sim/substeps 4\n");
+  // and back, by the name of its file
+  EXPECT_EQ(show.send({"/transport/scene", "first.lua", "--wait", "30"}).out, "/transport/playing first\n");
+  ASSERT_TRUE(show.running.wait_for("first plays from its start"));
+  EXPECT_EQ(show.send({"/list/bodies"}).out, "/list/bodies only_here\n");
+  show.running.signal(SIGTERM);
+  EXPECT_EQ(show.running.finish().code, 0);
+}
+
+TEST(Scenes, AWrongOneChangesNothing) {
+  Evening show;
+  const auto refused = [&](const std::string& name, const std::string& why) {
+    const Ran ran = show.send({"/transport/scene", name, "--wait", "30"});
+    EXPECT_EQ(ran.code, 1) << name;
+    EXPECT_NE(ran.err.find(why), std::string::npos) << ran.err;
+    EXPECT_EQ(show.send({"/list/bodies"}).out, "/list/bodies only_here\n");
+  };
+  refused("secnd", "there is no scene 'secnd'");
+  refused("secnd", "did you mean 'second'?");
+  refused("broken", "scripts/broken.lua:2: sim has no property 'gravty'; did you mean 'gravity'?");
+  // nothing outside the folder
+  refused("../scripts/second", "there is no scene '../scripts/second'");
+  refused("lib/no_scene", "there is no scene 'lib/no_scene'");
+  refused(show.second, "there is no scene");
+  refused("", "there is no scene ''");
+  refused("7", "takes the name of a scene");
+  EXPECT_EQ(show.send({"/list/scenes", "x"}).code, 1);
+  // the first one is still the one that is watched
+  show.folder.file("scripts/first.lua", "sim:add_body('only_here')\nprint('first again')\n");
+  EXPECT_TRUE(show.running.wait_for("first again\n", true));
+}
+
+TEST(Scenes, AFastRunPlaysOne) {
+  const Folder folder;
+  const std::string scene = folder.file("s.lua", "osc:on('/x', function() end)\n");
+  const Ran ran = run({scene, "--fast", "--ticks", "2", "--set", "/transport/scene=other"});
+  EXPECT_EQ(ran.code, 1);
+  EXPECT_NE(ran.err.find("--set /transport/scene"), std::string::npos) << ran.err;
+}
+
+}  // namespace
+}  // namespace limber::app_test
