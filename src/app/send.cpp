@@ -34,7 +34,7 @@ Result<Endpoint> endpoint_named(const std::string& text) {
   const std::optional<double> port = parse_number(text.substr(colon + 1));
   if (!port || *port < 1 || *port > 65535 || *port != static_cast<std::uint16_t>(*port))
     return Error{fmt::format("--to '{}' is no place to send to; write --to [HOST:]PORT", printable(text))};
-  const Result<Endpoint> at = resolve(host, static_cast<std::uint16_t>(*port));
+  Result<Endpoint> at = resolve(host, static_cast<std::uint16_t>(*port));
   if (!at) return Error{fmt::format("--to '{}': {}", printable(text), at.error())};
   return at;
 }

@@ -49,7 +49,7 @@ Reload::End Engine::take(Draft& draft) {
 
 Result<void> Engine::change_scene(const std::string& file) {
   auto fresh = std::make_unique<Stage>(link_);
-  const Result<void> ran = fresh->run_beside(file, *this, options_.scene_options);
+  Result<void> ran = fresh->run_beside(file, *this, options_.scene_options);
   if (!ran) return ran;
   const bool done = between_ticks([&] {
     options_.scene = file;
