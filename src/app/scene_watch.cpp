@@ -22,12 +22,18 @@ namespace {
 
 constexpr std::size_t kMostScenes = 1000;  // that are listed
 
+std::string folder_of(const std::string& scene) {
+  std::error_code fault;
+  const std::filesystem::path whole = std::filesystem::absolute(scene, fault);
+  return (fault ? std::filesystem::path(scene) : whole).parent_path();
+}
+
 }  // namespace
 
 SceneWatch::SceneWatch(EngineLink& link, Engine& engine, const std::string& scene, FileWatch::Way way)
     : link_(link),
       engine_(engine),
-      folder_(std::filesystem::absolute(scene).parent_path()),
+      folder_(folder_of(scene)),
       way_(way),
       wake_(eventfd(0, EFD_NONBLOCK | EFD_CLOEXEC)) {
   link_.ask_scenes = [this](const Message& message, const Origin& origin) {
@@ -80,10 +86,11 @@ void SceneWatch::run() {
 // names of the folder's scenes, without .lua, in the order of the alphabet
 std::vector<std::string> SceneWatch::scenes() const {
   std::vector<std::string> names;
-  std::error_code ignored;
-  for (const auto& entry : std::filesystem::directory_iterator(folder_, ignored)) {
-    const std::filesystem::path& file = entry.path();
-    if (file.extension() == ".lua" && entry.is_regular_file(ignored) && names.size() < kMostScenes)
+  std::error_code fault;  // a folder that goes meanwhile ends the list, not the show
+  for (std::filesystem::directory_iterator at(folder_, fault), end; !fault && at != end; at.increment(fault)) {
+    std::error_code ignored;
+    const std::filesystem::path& file = at->path();
+    if (file.extension() == ".lua" && at->is_regular_file(ignored) && names.size() < kMostScenes)
       names.push_back(file.stem());
   }
   std::ranges::sort(names);
@@ -104,7 +111,8 @@ bool SceneWatch::serve(const Message& wish, const Origin& origin) {
   if (name.ends_with(".lua")) name.resize(name.size() - 4);
   if (std::ranges::find(names, name) == names.end()) {
     refuse(wish, origin,
-           fmt::format("there is no scene '{}' in {}{}", printable(name), folder_, name_hint(name, names)));
+           fmt::format("there is no scene '{}' in {}/{}", printable(name),
+                       std::filesystem::path(folder_).filename().string(), name_hint(name, names)));
     return false;
   }
   const Result<void> changed = engine_.change_scene((std::filesystem::path(folder_) / (name + ".lua")).string());
@@ -119,7 +127,6 @@ bool SceneWatch::serve(const Message& wish, const Origin& origin) {
 
 void SceneWatch::refuse(const Message& wish, const Origin& origin, const std::string& why) {
   link_.counters.refused.fetch_add(1, std::memory_order_relaxed);
-  log_error("{}: {}", printable(wish.address), why);
   link_.push_out({Outgoing::To::error, origin, error_message(wish.address, why)});
 }
 

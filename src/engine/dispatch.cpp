@@ -79,18 +79,14 @@ std::span<const Irregular> Dispatch::irregulars() { return kIrregulars; }
 Dispatch::Dispatch(World& world, std::span<const Table* const> more) : world_(world), store_(world.store()) {
   for (const Table* table : named_classes()) add_class(*table);
   for (const Table* table : more) add_class(*table);
-  for (const Irregular& irregular : kIrregulars) {
-    const bool scenes = irregular.address.ends_with("/scenes") || irregular.address.ends_with("/scene");
-    const bool lists = irregular.address.starts_with("/list/");
-    const bool behavior = irregular.address.starts_with("/physics/behavior/");
-    const bool camera = irregular.address.starts_with("/visuals/camera/");
-    by_name_[std::string(irregular.address)].irregular = scenes                        ? &Dispatch::scenes
-                                                         : lists                       ? &Dispatch::list
-                                                         : behavior                    ? &Dispatch::behavior_parameter
-                                                         : camera                      ? &Dispatch::projection
-                                                         : irregular.address == "/get" ? &Dispatch::get
-                                                                                       : &Dispatch::part_force;
-  }
+  for (const Irregular& irregular : kIrregulars) by_name_[std::string(irregular.address)].irregular = &Dispatch::list;
+  // those that are no list
+  by_name_["/physics/part/force"].irregular = &Dispatch::part_force;
+  by_name_["/physics/behavior/parameter"].irregular = &Dispatch::behavior_parameter;
+  by_name_["/visuals/camera/projection"].irregular = &Dispatch::projection;
+  by_name_["/get"].irregular = &Dispatch::get;
+  by_name_["/list/scenes"].irregular = &Dispatch::scenes;
+  by_name_["/transport/scene"].irregular = &Dispatch::scenes;
   for (const auto& [address, entry] : by_name_) addresses_.push_back(address);
   for (const char* address : kGone) by_name_[address].irregular = &Dispatch::gone;
   std::sort(addresses_.begin(), addresses_.end());
