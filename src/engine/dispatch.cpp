@@ -35,6 +35,13 @@ constexpr Irregular kIrregulars[] = {
     {"/list/behaviors", "body", "Answers with the body and its behaviours' names, in the order in which they act."},
     {"/list/groups", "", "Answers with the names of the group behaviours."},
     {"/list/shapes", "", "Answers with the names of the scene's shapes."},
+    {"/list/presets", "", "Answers with the names of the presets, in their order."},
+    {"/preset/store", "name [pattern ...] [behaviors] [looks] [poses] [velocities] [except pattern ...]",
+     "Keeps every property, or what is named, as it is now, under that name."},
+    {"/preset/recall", "name [seconds [easing]]",
+     "Brings that back, at once or over seconds: smooth, linear, in or out."},
+    {"/preset/morph", "preset preset amount", "What lies between two, 0: the first, 1: the second."},
+    {"/preset/delete", "name", "Forgets a preset."},
 };
 
 // the seed's that took a joint's frames apart; refused with the reason
@@ -74,17 +81,19 @@ std::string Dispatch::seed_address(const Table& table, const Row& row) {
 
 std::span<const Irregular> Dispatch::irregulars() { return kIrregulars; }
 
-Dispatch::Dispatch(World& world) : world_(world), store_(world.store()) {
+Dispatch::Dispatch(World& world, Presets* presets) : world_(world), presets_(presets), store_(world.store()) {
   for (const Table* table : named_classes()) {
     for (const Row& row : table->rows()) {
       if (std::string address = seed_address(*table, row); !address.empty()) by_name_[address] = {table, &row, nullptr};
     }
   }
   for (const Irregular& irregular : kIrregulars) {
+    const bool of_presets = irregular.address.starts_with("/preset/") || irregular.address == "/list/presets";
     const bool lists = irregular.address.starts_with("/list/");
     const bool behavior = irregular.address.starts_with("/physics/behavior/");
     const bool camera = irregular.address.starts_with("/visuals/camera/");
-    by_name_[std::string(irregular.address)].irregular = lists                         ? &Dispatch::list
+    by_name_[std::string(irregular.address)].irregular = of_presets                    ? &Dispatch::preset
+                                                         : lists                       ? &Dispatch::list
                                                          : behavior                    ? &Dispatch::behavior_parameter
                                                          : camera                      ? &Dispatch::projection
                                                          : irregular.address == "/get" ? &Dispatch::get
@@ -329,6 +338,13 @@ Outcome Dispatch::list(const Message& message) {
 }
 
 Outcome Dispatch::get(const Message& message) { return answers_.get(message.args); }
+
+Outcome Dispatch::preset(const Message& message) {
+  if (presets_ == nullptr) return Outcome::refused("there are no presets here");
+  std::array<char, 96> buffer;
+  const std::string_view address = plain_address(message.address, buffer);
+  return presets_->execute(address.substr(address.find_last_of('/') + 1), message, world_);
+}
 
 Outcome Dispatch::gone(const Message&) {
   return Outcome::refused(

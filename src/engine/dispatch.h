@@ -12,6 +12,7 @@
 #include "engine/answers.h"
 #include "engine/coerce.h"
 #include "engine/outcome.h"
+#include "engine/presets.h"
 #include "engine/select.h"
 #include "params/catalog.h"
 #include "sim/world.h"
@@ -30,7 +31,8 @@ class Dispatch {
   /// Work of all patterns between two ticks; see PatternBudget.
   static constexpr int kTickWork = 4 * PatternBudget::kMessage;
 
-  explicit Dispatch(World& world);
+  /// Without presets their messages are refused.
+  explicit Dispatch(World& world, Presets* presets = nullptr);
 
   Outcome execute(const Message& message);
   /// Near names are looked for in so many messages between two calls; others are refused with a shorter text.
@@ -83,8 +85,10 @@ class Dispatch {
   Outcome list(const Message& message);
   Outcome get(const Message& message);
   Outcome gone(const Message& message);
+  Outcome preset(const Message& message);
 
   World& world_;
+  Presets* presets_;
   Store& store_;
   HintBudget hints_;
   PatternBudget work_{kTickWork};  // left of this tick

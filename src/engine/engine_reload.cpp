@@ -1,6 +1,7 @@
 // Engine: the scene's runs beside the show.
 #include <utility>
 
+#include "base/log.h"
 #include "engine/draft.h"
 #include "engine/engine.h"
 
@@ -34,15 +35,17 @@ Reload::End Engine::reload_now(bool again) {
 
 Reload::End Engine::take(Draft& draft) {
   const bool is_start = stage_->scene == nullptr;
-  const Reload::End end = reload_.take(draft, *stage_);
+  const Reload::End end = [&] {
+    const Presets::Hands hands(presets_, stage_->store);
+    return reload_.take(draft, *stage_);
+  }();
   if (end != Reload::End::applied) return end;
+  presets_.scene_says(reload_.script());
   static const Row& seed = World::table().at("seed");
   if ((draft.difference().world >> seed.index & 1u) != 0) scene_seed_ = stage_->world.seed();
   if (!is_start) return end;
   scene_seed_ = stage_->world.seed();
-  for (const Message& message : options_.sets) {
-    if (stage_->dispatch.execute(message).kind == Outcome::Kind::applied) hand_.remember(message);
-  }
+  if (const Result<void> set = first_hand(); !set) log_error("{}", set.error());
   begin_show();
   return end;
 }

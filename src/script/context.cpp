@@ -75,6 +75,7 @@ void ScriptContext::end_call(bool good) {
         host.send_direct(h.to, std::move(h.message));
       }
     }
+    for (Message& wish : preset_wishes) host.ask_preset(std::move(wish));
     if (reset_wanted) host.ask_reset();
   } else {
     forces.clear();
@@ -83,6 +84,7 @@ void ScriptContext::end_call(bool good) {
     seeded_with = seeded_before_;
   }
   held.clear();
+  preset_wishes.clear();
 }
 
 Behavior* behavior_of(const ScriptContext& c, NodeId id) {
