@@ -12,6 +12,7 @@
 #include "app/bench_flock.h"
 #include "app/bench_lua.h"
 #include "app/bench_osc.h"
+#include "app/bench_preset.h"
 #include "app/bench_query.h"
 #include "app/bench_reload.h"
 #include "app/bench_spawn.h"
@@ -112,6 +113,7 @@ const std::vector<BenchScene>& bench_scenes() {
       {"spawn", "load urdf/arm17.urdf and make 1000 copies", &bench_spawn},
       {"reload", "a scene saved while it plays: how soon the new one is in force, and what its ticks feel of it",
        &bench_reload},
+      {"preset", "presets of every property of 1000 arms: stored, recalled, glided to", &bench_preset},
       {"osc-in", "messages a second from a socket into rows; a burst of 10 000", &bench_osc_in},
       {"osc-latency", "from message to answer: /ping, and a value in force", &bench_osc_latency},
       {"osc-out", "frames of 1000 bodies in three streams", &bench_osc_out},

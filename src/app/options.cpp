@@ -23,6 +23,7 @@
 #include "app/new.h"
 #include "app/paths.h"
 #include "app/play.h"
+#include "app/preset.h"
 #include "app/send.h"
 #include "base/build_info.h"
 #include "base/text.h"
@@ -31,8 +32,8 @@ namespace limber {
 
 namespace {
 
-constexpr std::array<std::string_view, 10> kCommands = {"play",    "console",  "monitor",  "send",  "new",
-                                                        "inspect", "describe", "annotate", "bench", "doctor"};
+constexpr std::array<std::string_view, 11> kCommands = {"play",     "console",  "monitor", "send",   "new",   "inspect",
+                                                        "describe", "annotate", "bench",   "preset", "doctor"};
 
 constexpr const char* kAbout =
     "Limber: a live simulator of actuated, articulated bodies, scripted in Lua, played over OSC.\n\n"
@@ -85,6 +86,8 @@ CLI::App* add_play(CLI::App& app, PlayOptions& o) {
   play->add_option("--set", o.sets, "set a value after the scene ran; a path or the seed's address")
       ->type_name("PATH=VALUE")
       ->allow_extra_args(false);
+  play->add_option("--preset", o.preset, "begin with this preset of the scene's, before what --set says")
+      ->type_name("NAME");
   play->add_option("--osc-in", o.osc_in, "where OSC comes in; default 127.0.0.1:9003")->type_name("[ADDR:]PORT|off");
   play->add_option("--osc-allow", o.osc_allow, "only these senders, such as 192.168.1.0/24")->type_name("CIDR,...");
   play->add_option("--osc-out", o.osc_out,
@@ -139,6 +142,7 @@ struct CommandLine {
   MonitorCommand monitor;
   SendCommand send;
   NewCommand fresh;
+  PresetCommand preset;
   bool json = false;
   bool markdown = false;
   std::vector<std::string> package_paths;
@@ -227,6 +231,15 @@ void add_new(CLI::App& app, NewCommand& command) {
   add("behavior", NewCommand::What::behavior, "NAME", "behaviors_lua/NAME.lua in the show around this folder");
 }
 
+void add_preset(CLI::App& app, PresetCommand& command) {
+  CLI::App* preset = app.add_subcommand("preset", "presets from elsewhere");
+  preset->require_subcommand(1);
+  CLI::App* import = preset->add_subcommand("import", "those of a Max pattrstorage (writejson) into a scene's");
+  import->add_option("file", command.file, "the pattrstorage")->type_name("FILE.json")->required();
+  import->add_option("scene", command.scene, "the scene that they are for; left out: scripts/arms.lua")
+      ->type_name("SCENE.lua");
+}
+
 // what was wrong, as CLI11 tells it; for an option that there is not, the near one
 std::string usage_text(const CLI::App& app, const CLI::ParseError& error) {
   const CLI::App* command = app.get_subcommands().empty() ? &app : app.get_subcommands().front();
@@ -260,6 +273,7 @@ int run_command_line(int argc, char** argv) {
   add_monitor(app, line.monitor);
   add_send(app, line.send);
   add_new(app, line.fresh);
+  add_preset(app, line.preset);
   CLI::App* annotate = app.add_subcommand("annotate", "definitions of all that scripts see, for editors (LuaCATS)");
   annotate->add_option("file", line.definitions, "where they go; left out: stdout")->type_name("FILE");
   app.add_subcommand("doctor", "what works on this machine: ports, buffers, data");
@@ -288,6 +302,7 @@ int run_command_line(int argc, char** argv) {
   if (command == "monitor") return monitor_command(line.monitor);
   if (command == "send") return send_command(line.send);
   if (command == "new") return new_command(line.fresh);
+  if (command == "preset") return preset_command(line.preset);
   if (command == "annotate") return annotate_command(line.definitions);
   if (command == "bench") return bench_command(line.bench);
   if (command == "doctor") return doctor_command();

@@ -90,6 +90,7 @@ Result<EngineOptions> parse_engine(const PlayOptions& options, const std::string
   engine.strict = options.strict;
   engine.ticks = options.ticks;
   engine.duration = options.duration;
+  engine.preset = options.preset;
   for (const std::string& text : options.sets) {
     Result<Message> set = parse_set(text);
     if (!set) return Error{set.error()};
@@ -260,6 +261,7 @@ int play_scene(const PlayOptions& options, EngineOptions engine_options, const O
     interrupted = watch(show, engine, link, signals);
   }
   scene_watch.reset();
+  engine.finish_saving();
   query.stop();
   network.stop();
   console.stop();

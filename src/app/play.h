@@ -19,6 +19,7 @@ struct PlayOptions {
   std::optional<double> duration;
   std::optional<std::uint64_t> seed;
   std::vector<std::string> sets;  ///< PATH=VALUE
+  std::string preset;             ///< Recalled after the scene ran, before the sets.
   std::vector<std::string> package_paths;
   std::string osc_in;  ///< Empty: not given.
   std::string osc_allow;

@@ -37,6 +37,13 @@ constexpr Irregular kIrregulars[] = {
     {"/list/shapes", "", "Answers with the names of the scene's shapes."},
     {"/list/scenes", "", "Answers with the names of the scenes in the folder of the one that plays."},
     {"/transport/scene", "scene", "Another scene of that folder plays from its start; the performer's values go."},
+    {"/list/presets", "", "Answers with the names of the presets, in their order."},
+    {"/preset/store", "name [pattern ...] [behaviors] [looks] [poses] [velocities] [except pattern ...]",
+     "Keeps every property, or what is named, as it is now, under that name."},
+    {"/preset/recall", "name [seconds [easing]]",
+     "Brings that back, at once or over seconds: smooth, linear, in or out."},
+    {"/preset/morph", "preset preset amount", "What lies between two, 0: the first, 1: the second."},
+    {"/preset/delete", "name", "Forgets a preset."},
 };
 
 // the seed's that took a joint's frames apart; refused with the reason
@@ -76,11 +83,16 @@ std::string Dispatch::seed_address(const Table& table, const Row& row) {
 
 std::span<const Irregular> Dispatch::irregulars() { return kIrregulars; }
 
-Dispatch::Dispatch(World& world, std::span<const Table* const> more) : world_(world), store_(world.store()) {
+Dispatch::Dispatch(World& world, Presets* presets, std::span<const Table* const> more)
+    : world_(world), presets_(presets), store_(world.store()) {
   for (const Table* table : named_classes()) add_class(*table);
   for (const Table* table : more) add_class(*table);
-  for (const Irregular& irregular : kIrregulars) by_name_[std::string(irregular.address)].irregular = &Dispatch::list;
-  // those that are no list
+  for (const Irregular& irregular : kIrregulars) {
+    const bool of_presets = irregular.address.starts_with("/preset/");
+    by_name_[std::string(irregular.address)].irregular = of_presets ? &Dispatch::preset : &Dispatch::list;
+  }
+  // those that are neither
+  by_name_["/list/presets"].irregular = &Dispatch::preset;
   by_name_["/physics/part/force"].irregular = &Dispatch::part_force;
   by_name_["/physics/behavior/parameter"].irregular = &Dispatch::behavior_parameter;
   by_name_["/visuals/camera/projection"].irregular = &Dispatch::projection;
@@ -345,6 +357,13 @@ Outcome Dispatch::scenes(const Message& message) {
 }
 
 Outcome Dispatch::get(const Message& message) { return answers_.get(message.args); }
+
+Outcome Dispatch::preset(const Message& message) {
+  if (presets_ == nullptr) return Outcome::refused("there are no presets here");
+  std::array<char, 96> buffer;
+  const std::string_view address = plain_address(message.address, buffer);
+  return presets_->execute(address.substr(address.find_last_of('/') + 1), message, world_);
+}
 
 Outcome Dispatch::gone(const Message&) {
   return Outcome::refused(

@@ -12,6 +12,7 @@
 #include "engine/answers.h"
 #include "engine/coerce.h"
 #include "engine/outcome.h"
+#include "engine/presets.h"
 #include "engine/select.h"
 #include "params/catalog.h"
 #include "sim/world.h"
@@ -30,9 +31,9 @@ class Dispatch {
   /// Work of all patterns between two ticks; see PatternBudget.
   static constexpr int kTickWork = 4 * PatternBudget::kMessage;
 
-  /// `more`: classes beside the world's own, whose things stand in a group of their name in each body; one with a
-  /// class's own addresses goes before it.
-  explicit Dispatch(World& world, std::span<const Table* const> more = {});
+  /// Without presets their messages are refused. `more`: classes beside the world's own, whose things stand in a group
+  /// of their name in each body; one with a class's own addresses goes before it.
+  explicit Dispatch(World& world, Presets* presets = nullptr, std::span<const Table* const> more = {});
 
   Outcome execute(const Message& message);
   /// Near names are looked for in so many messages between two calls; others are refused with a shorter text.
@@ -87,8 +88,10 @@ class Dispatch {
   Outcome scenes(const Message& message);
   Outcome get(const Message& message);
   Outcome gone(const Message& message);
+  Outcome preset(const Message& message);
 
   World& world_;
+  Presets* presets_;
   Store& store_;
   HintBudget hints_;
   PatternBudget work_{kTickWork};  // left of this tick

@@ -3,6 +3,8 @@
 
 #include <utility>
 
+#include "engine/preset_taker.h"
+
 namespace limber {
 
 Draft::Draft(DraftOrder order, ScriptHost& host)
@@ -12,6 +14,7 @@ Draft::Draft(DraftOrder order, ScriptHost& host)
   world_.stand();
   description_ = std::make_shared<const Description>(describe(world_));
   difference_ = compare(*order_.before, *description_);
+  script_ = PresetTaker::take_script(store_);
   find_spots();
   scene_->prepare();
 }

@@ -8,6 +8,7 @@
 
 #include "engine/description.h"
 #include "engine/difference.h"
+#include "engine/preset.h"
 #include "script/scene.h"
 #include "script/sources.h"
 
@@ -37,6 +38,8 @@ class Draft {
   const std::shared_ptr<const Description>& description() const { return description_; }
   const Difference& difference() const { return difference_; }
   std::vector<SourceFile> files() const;
+  /// Every property as the run describes it.
+  const std::shared_ptr<const Preset>& script() const { return script_; }
 
   /// The scene that becomes the show; what is left in its place goes with the draft.
   std::unique_ptr<Scene>& scene() { return scene_; }
@@ -61,6 +64,7 @@ class Draft {
   Result<void> ran_;
   std::shared_ptr<const Description> description_;
   Difference difference_;
+  std::shared_ptr<const Preset> script_;
 };
 
 }  // namespace limber

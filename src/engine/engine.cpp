@@ -37,7 +37,7 @@ class Stopwatch {
 Engine::Engine(EngineLink& link, EngineOptions options)
     : link_(link),
       options_(std::move(options)),
-      stage_(std::make_unique<Stage>(link)),
+      stage_(std::make_unique<Stage>(link, presets_)),
       reload_(options_.scene, *this, hand_) {
   link_.wake_engine = [this] { commands_wait_.store(true, std::memory_order_relaxed); };
 }
@@ -47,30 +47,22 @@ Engine::~Engine() {
 }
 
 Result<void> Engine::start() {
+  presets_.open(read_presets(options_.scene));
   if (Result<void> ran = stage_->run(options_.scene, *this, options_.scene_options); !ran) {
-    stage_ = std::make_unique<Stage>(link_);
+    stage_ = std::make_unique<Stage>(link_, presets_);
     reload_.begin(*stage_, options_.scene_options);
+    presets_.scene_says(reload_.script());
     return ran;
   }
   reload_.begin(*stage_, options_.scene_options);
+  presets_.scene_says(reload_.script());
   World& world = stage_->world;
   if (options_.scene_options.seed) {
     const auto seed = static_cast<double>(*options_.scene_options.seed);
     (void)stage_->store.set(world.id(), "seed", {&seed, 1});  // any 53-bit seed is in its range
   }
   scene_seed_ = world.seed();
-  for (const Message& message : options_.sets) {
-    const Outcome outcome = stage_->dispatch.execute(message);
-    if (outcome.kind == Outcome::Kind::answered) {
-      return Error{
-          fmt::format("--set {}: this is a question, no value; set a path, such as /physics/sim/gravity=0,0,-1.6",
-                      message.address)};
-    }
-    if (outcome.kind != Outcome::Kind::applied)
-      return Error{fmt::format("--set {}: {}", printable(message.address), outcome.error)};
-    if (outcome.clamped != nullptr) say_clamped(message, *outcome.clamped);
-    hand_.remember(message);
-  }
+  if (Result<void> set = first_hand(); !set) return set;
   begin_show();
   publish();
   return {};
@@ -85,7 +77,7 @@ void Engine::begin_show() {
 
 void Engine::reset() {
   // a scene that fails now leaves the show as it is
-  auto fresh = std::make_unique<Stage>(link_);
+  auto fresh = std::make_unique<Stage>(link_, presets_);
   SceneOptions scene_options = options_.scene_options;
   const World& before = stage_->world;
   if (before.seed() != scene_seed_) scene_options.seed = before.seed();  // the performer's
@@ -95,6 +87,7 @@ void Engine::reset() {
     return;
   }
   reload_.begin(*fresh, scene_options);
+  presets_.scene_says(reload_.script());
   if (scene_options.seed) keep_state(*fresh, "seed");
   take_stage(std::move(fresh));
   if (stage_->scene != nullptr) stage_->scene->arm();  // while both were there, the new one ran interpreted
@@ -114,6 +107,7 @@ std::unique_ptr<Stage> Engine::take_stage(std::unique_ptr<Stage> fresh) {
   faults_ += stage_->world.health_events();
   std::swap(stage_, fresh);
   images_.forget_store();
+  presets_.forget_store();
   return fresh;
 }
 
@@ -134,10 +128,9 @@ void Engine::replay_hand() {
   }
   auto next = scenes.begin();
   for (const HandStep& step : steps) {
-    if (step.message != nullptr) {
-      (void)stage_->dispatch.execute(*step.message);
-      continue;
-    }
+    if (step.message != nullptr) (void)stage_->dispatch.execute(*step.message);
+    if (step.blend != nullptr) presets_.repeat(stage_->world, *step.blend);
+    if (step.address == nullptr) continue;
     const Value& value = *next++;
     if (value.place.row != nullptr)
       (void)store.set(value.place.node, *value.place.row, {value.values.data(), value.place.row->width});
@@ -207,8 +200,10 @@ void Engine::pass(bool may_step) {
 
   Stage& stage = *stage_;
   const bool running = may_step && (!stage.transport.paused() || stage.transport.take_step());
+  if (running) presets_.advance(stage.world);
   call_handlers();
   if (running && stage.scene != nullptr) stage.scene->tick(stage.world.timestep());
+  carry_out_wishes();
   times_.scripts = watch.lap();
 
   if (running) {
@@ -235,6 +230,7 @@ void Engine::pass(bool may_step) {
 
 void Engine::publish() {
   stage_->counters.tell();
+  stage_->preset_node.tell();
   stage_->transport.tell(clock_.speed_reached());
   stage_->publisher.publish(stage_->transport.paused(), clock_.speed_reached());
 }
@@ -247,6 +243,7 @@ void Engine::make_image(std::uint64_t asks) {
 
 void Engine::drain() {
   stage_->dispatch.begin_tick();
+  const Presets::Hands hands(presets_, stage_->store);
   bool taken = false;
   for (int work = kTickWork; work > 0;) {
     if (next_command_ < commands_.size()) {
@@ -290,6 +287,10 @@ int Engine::execute(Message& message, const Origin& origin) {
     for (const Dispatch::Write& write : stage_->dispatch.written())
       images_.note(stage_->store, origin, write.place, write.place.row == outcome.clamped);
   }
+  if (!outcome.said.empty()) {
+    log_warning("{}", outcome.said);
+    refuse(message.address, origin, outcome.said);
+  }
   for (Message& answer : outcome.answers) push_out({Outgoing::To::sender, origin, std::move(answer)});
   if (outcome.kind == Outcome::Kind::refused) {
     link_.counters.refused.fetch_add(1, std::memory_order_relaxed);
@@ -313,6 +314,7 @@ int Engine::execute(Message& message, const Origin& origin) {
 }
 
 void Engine::call_handlers() {
+  const Presets::Hands hands(presets_, stage_->store);
   for (Heard& heard : heard_) {
     const bool handled = stage_->scene->message(heard.message, heard.origin);
     if (handled || !heard.unknown) continue;

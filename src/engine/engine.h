@@ -15,6 +15,7 @@
 #include "engine/hand.h"
 #include "engine/image_maker.h"
 #include "engine/link.h"
+#include "engine/presets.h"
 #include "engine/reload.h"
 #include "engine/requests.h"
 #include "engine/stage.h"
@@ -29,7 +30,8 @@ struct EngineOptions {
   std::optional<double> duration;      ///< Ends at that simulated time, s.
   bool strict = false;                 ///< Ends at the first fault.
   bool print = true;                   ///< Scripts' print goes to stdout; false: to stderr, where stdout is an answer.
-  std::vector<Message> sets;           ///< `--set`: the performer's hand before the first tick.
+  std::string preset;                  ///< `--preset`: recalled before the first tick.
+  std::vector<Message> sets;           ///< `--set`: the performer's hand before the first tick, after the preset.
 };
 
 /// Seconds of the last tick, by phase (architecture.md, the tick).
@@ -82,6 +84,9 @@ class Engine : private ScriptHost {
   World& world() { return stage_->world; }
   Store& store() { return stage_->store; }
   const PhaseTimes& times() const { return times_; }
+  const Presets& presets() const { return presets_; }
+  /// Waits until what presets have to write is on the disk. [any but sim]
+  void finish_saving() { presets_.finish_saving(); }
   /// World, scene and generators. [sim]
   std::uint64_t state_hash() const;
   /// Script errors and refused values so far, health events: what `--strict` asks for. [sim]
@@ -93,6 +98,9 @@ class Engine : private ScriptHost {
   void send_direct(const Origin& to, Message message) override;
   void plan_osc(const OscPlan& plan) override;
   void ask_reset() override;
+  Result<void> check_preset(const Message& wish, std::span<const Message> before) override;
+  void ask_preset(Message wish) override;
+  std::vector<std::string> preset_names() override;
   void script_error(std::string_view file, int line, std::string_view text) override;
   void print(std::string_view text) override;
 
@@ -103,6 +111,9 @@ class Engine : private ScriptHost {
   /// The stage becomes the show; the answer is the one before.
   std::unique_ptr<Stage> take_stage(std::unique_ptr<Stage> fresh);
   void replay_hand();
+  Presets::Book read_presets(const std::string& scene);
+  Result<void> first_hand();
+  void carry_out_wishes();
   Reload::End take(Draft& draft);
   void begin_show();
   void rerun();
@@ -125,9 +136,10 @@ class Engine : private ScriptHost {
 
   EngineLink& link_;
   EngineOptions options_;
+  PerformerHand hand_;
+  Presets presets_{hand_};
   std::unique_ptr<Stage> stage_;
   std::uint64_t scene_seed_ = 0;  // as the scene's run left it
-  PerformerHand hand_;
   Reload reload_;
   Requests requests_;
   ImageMaker images_{link_.images};
@@ -145,6 +157,7 @@ class Engine : private ScriptHost {
   std::uint64_t asks_of_batch_ = 0;       // images asked for before commands_ was taken
   std::uint64_t asks_ = 0;                // images that may be made: all that came before was done
   std::vector<Heard> heard_;              // messages of this tick, for the scene's handlers
+  std::vector<Message> wishes_;           // of scripts, about presets
   std::vector<const Row*> said_clamped_;  // rows whose clamping was said
   std::uint64_t faults_ = 0;
   bool was_paused_ = false;

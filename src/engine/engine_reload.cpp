@@ -1,6 +1,7 @@
 // Engine: the scene's runs beside the show.
 #include <utility>
 
+#include "base/log.h"
 #include "engine/draft.h"
 #include "engine/engine.h"
 
@@ -34,27 +35,32 @@ Reload::End Engine::reload_now(bool again) {
 
 Reload::End Engine::take(Draft& draft) {
   const bool is_start = stage_->scene == nullptr;
-  const Reload::End end = reload_.take(draft, *stage_);
+  const Reload::End end = [&] {
+    const Presets::Hands hands(presets_, stage_->store);
+    return reload_.take(draft, *stage_);
+  }();
   if (end != Reload::End::applied) return end;
+  presets_.scene_says(reload_.script());
   static const Row& seed = World::table().at("seed");
   if ((draft.difference().world >> seed.index & 1u) != 0) scene_seed_ = stage_->world.seed();
   if (!is_start) return end;
   scene_seed_ = stage_->world.seed();
-  for (const Message& message : options_.sets) {
-    if (stage_->dispatch.execute(message).kind == Outcome::Kind::applied) hand_.remember(message);
-  }
+  if (const Result<void> set = first_hand(); !set) log_error("{}", set.error());
   begin_show();
   return end;
 }
 
 Result<void> Engine::change_scene(const std::string& file) {
-  auto fresh = std::make_unique<Stage>(link_);
+  auto fresh = std::make_unique<Stage>(link_, presets_);
   Result<void> ran = fresh->run_beside(file, *this, options_.scene_options);
   if (!ran) return ran;
+  Presets::Book book = read_presets(file);
   const bool done = between_ticks([&] {
     options_.scene = file;
     hand_.clear();
     reload_.begin(*fresh, options_.scene_options, file);
+    presets_.scene_says(reload_.script());
+    book = presets_.open(std::move(book));
     if (stage_->scene != nullptr) stage_->scene->disarm();
     fresh = take_stage(std::move(fresh));
     stage_->begin(*this);
@@ -63,7 +69,7 @@ Result<void> Engine::change_scene(const std::string& file) {
     send_transport();
   });
   if (!done) return Error{"the show has ended"};
-  return ran;  // the stage before goes here, beside the show
+  return ran;  // the stage and the presets before go here, beside the show
 }
 
 void Engine::rerun() {

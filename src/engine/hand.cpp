@@ -7,7 +7,14 @@ namespace limber {
 
 namespace {
 constexpr std::size_t kMostRemembered = 65536;  // a flood of ever new addresses ends here
+constexpr std::size_t kMostRecalls = 64;
+
+// whether the second sets every row that the first does
+bool covers(const Blend& first, const Blend& second) {
+  return first.a->shape == second.a->shape && first.a->choice.except == second.a->choice.except &&
+         first.b->choice.except == second.b->choice.except;
 }
+}  // namespace
 
 void PerformerHand::remember(const Message& message) {
   key_ = message.address;
@@ -26,16 +33,23 @@ void PerformerHand::remember(const Message& message) {
 }
 
 void PerformerHand::give_back(const std::string& address) {
-  if (values_.empty()) return;
+  if (size() == 0) return;
   if (returned_.size() >= kMostRemembered && !returned_.contains(address)) return;
   returned_[address] = ++order_;
 }
 
+void PerformerHand::recall(const Blend& blend) {
+  std::erase_if(recalls_, [&](const Recall& r) { return covers(r.blend, blend); });
+  if (recalls_.size() >= kMostRecalls) recalls_.erase(recalls_.begin());
+  recalls_.push_back({blend, ++order_});
+}
+
 std::vector<HandStep> PerformerHand::in_order() const {
   std::vector<std::pair<std::uint64_t, HandStep>> steps;
-  steps.reserve(values_.size() + returned_.size());
-  for (const auto& [key, value] : values_) steps.push_back({value.order, {&value.message, nullptr}});
-  for (const auto& [address, order] : returned_) steps.push_back({order, {nullptr, &address}});
+  steps.reserve(values_.size() + returned_.size() + recalls_.size());
+  for (const auto& [key, value] : values_) steps.push_back({value.order, {&value.message, nullptr, nullptr}});
+  for (const auto& [address, order] : returned_) steps.push_back({order, {nullptr, &address, nullptr}});
+  for (const Recall& recall : recalls_) steps.push_back({recall.order, {nullptr, nullptr, &recall.blend}});
   std::sort(steps.begin(), steps.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
   std::vector<HandStep> list;
   list.reserve(steps.size());

@@ -8,13 +8,15 @@
 #include <vector>
 
 #include "base/message.h"
+#include "engine/preset.h"
 
 namespace limber {
 
-/// One of two: a message that was sent, or the address of a value that is the scene's again.
+/// One of three: a message that was sent, the address of a value that is the scene's again, a preset that was recalled.
 struct HandStep {
   const Message* message = nullptr;
   const std::string* address = nullptr;
+  const Blend* blend = nullptr;
 };
 
 class PerformerHand {
@@ -24,9 +26,11 @@ class PerformerHand {
   void remember(const Message& message);
   /// A reload gave this value what the scene says: nothing that was sent before counts for it any more.
   void give_back(const std::string& address);
+  /// The preset was recalled. It replaces an earlier one of the same rows.
+  void recall(const Blend& blend);
   /// All of them, the oldest first: done again in this order they leave what the performer left.
   std::vector<HandStep> in_order() const;
-  std::size_t size() const { return values_.size(); }
+  std::size_t size() const { return values_.size() + recalls_.size(); }
   void clear() { *this = {}; }
 
  private:
@@ -36,7 +40,12 @@ class PerformerHand {
   };
   std::unordered_map<std::string, Value> values_;            // by address and names
   std::unordered_map<std::string, std::uint64_t> returned_;  // order of the reload, by address
-  std::string key_;                                          // scratch
+  struct Recall {
+    Blend blend;
+    std::uint64_t order = 0;
+  };
+  std::vector<Recall> recalls_;
+  std::string key_;  // scratch
   std::uint64_t order_ = 0;
 };
 

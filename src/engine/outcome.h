@@ -21,6 +21,7 @@ struct Outcome {
   bool kept = false;             ///< It set a property: a performer's value, which a reset keeps.
   const Row* clamped = nullptr;  ///< A row whose range the value was outside of.
   std::string error;
+  std::string said;  ///< What was left out of what was done.
   std::vector<Message> answers;
 
   static Outcome refused(std::string why) {

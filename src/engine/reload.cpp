@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include "base/log.h"
+#include "engine/preset_taker.h"
 
 namespace limber {
 
@@ -17,6 +18,7 @@ void Reload::begin(const Stage& stage, const SceneOptions& options) {
   options_ = options;
   description_ = std::make_shared<const Description>(describe(stage.world));
   things_ = things_of(stage.world);
+  script_ = PresetTaker::take_script(stage.store);
   sources_ = stage.scene == nullptr ? nullptr : stage.scene->sources();
   ran_with_.clear();
   if (stage.scene != nullptr) stage.scene->rerun_values(ran_with_);
@@ -66,6 +68,7 @@ Reload::End Reload::take(Draft& draft, Stage& stage) {
     set_by_scene(params, store.table(params).row(static_cast<std::uint32_t>(std::countr_zero(defaults))));
   std::swap(stage.scene, scene);
   description_ = draft.description();
+  script_ = draft.script();
   sources_ = stage.scene->sources();
   const bool from_disk = draft.order().inputs.sources == nullptr;
   if (from_disk) {

@@ -38,6 +38,8 @@ class Reload {
   /// A fault of a script was told; it counts until its file is mended. [sim]
   void faulty(std::string_view file) { faulty_.emplace(file); }
 
+  /// Every property as the last good run describes it. [sim]
+  const std::shared_ptr<const Preset>& script() const { return script_; }
   /// Files that the last good run depends on, and those of the last run when that failed. [any]
   std::vector<SourceFile> files() const;
 
@@ -50,6 +52,7 @@ class Reload {
   ScriptHost& host_;
   PerformerHand& hand_;
   std::shared_ptr<const Description> description_;
+  std::shared_ptr<const Preset> script_;
   std::shared_ptr<const Sources> sources_;
   LiveThings things_;
   std::vector<double> ran_with_;  // values of parameters with `rerun`

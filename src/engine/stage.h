@@ -6,6 +6,7 @@
 
 #include "engine/dispatch.h"
 #include "engine/link.h"
+#include "engine/preset_node.h"
 #include "engine/publish.h"
 #include "engine/transport.h"
 #include "script/scene.h"
@@ -13,11 +14,12 @@
 namespace limber {
 
 struct Stage {
-  explicit Stage(EngineLink& link)
+  Stage(EngineLink& link, Presets& presets)
       : world(store),
         transport(world),
         counters(store, link.counters),
-        dispatch(world),
+        preset_node(world, presets),
+        dispatch(world, &presets),
         publisher(world, link.snapshots) {}
 
   /// Runs the scene's file; without one the world stays empty.
@@ -55,6 +57,7 @@ struct Stage {
   World world;
   Transport transport;
   CounterNode counters;
+  PresetNode preset_node;
   Dispatch dispatch;
   Publisher publisher;
   std::unique_ptr<Scene> scene;  // last: it goes first

@@ -14,9 +14,9 @@ bool same_row(const Row& a, const Row& b) {
   return a.name == b.name && a.type == b.type && a.kind == b.kind && a.unit == b.unit && a.min == b.min &&
          a.max == b.max && a.axis_min == b.axis_min && a.axis_max == b.axis_max && a.step == b.step &&
          a.initial == b.initial && a.doc == b.doc && a.choices == b.choices && a.own_axis == b.own_axis &&
-         a.live == b.live && a.effect == b.effect && a.read == b.read && a.write == b.write && a.say == b.say &&
-         a.refuse == b.refuse && a.act == b.act && a.written == b.written && a.min_args == b.min_args &&
-         a.max_args == b.max_args;
+         a.turns == b.turns && a.live == b.live && a.effect == b.effect && a.read == b.read && a.write == b.write &&
+         a.say == b.say && a.refuse == b.refuse && a.act == b.act && a.written == b.written &&
+         a.min_args == b.min_args && a.max_args == b.max_args;
 }
 
 }  // namespace

@@ -262,10 +262,12 @@ Result<SetOutcome> Store::set(NodeId id, const Row& row, std::span<const double>
         fmt::format("{} has the choices {}; {} is none of them", where(), fmt::join(row.choices, ", "), values[0])};
   }
   if (row.type == RowType::quat) {
-    const double length =
-        std::sqrt(taken[0] * taken[0] + taken[1] * taken[1] + taken[2] * taken[2] + taken[3] * taken[3]);
-    if (length < 1e-9) return Error{fmt::format("{} takes a rotation; 0 0 0 0 is none", where())};
-    for (double& v : taken) v /= length;
+    const double square = taken[0] * taken[0] + taken[1] * taken[1] + taken[2] * taken[2] + taken[3] * taken[3];
+    if (square < 1e-18) return Error{fmt::format("{} takes a rotation; 0 0 0 0 is none", where())};
+    // what is of length 1 but for rounding stays to the bit: a value that was read can be set again
+    if (std::abs(square - 1) > 1e-14) {
+      for (double& v : taken) v /= std::sqrt(square);
+    }
   }
   void* const the_thing = nodes_[id.slot].thing;
   if (row.refuse != nullptr) {
@@ -282,6 +284,7 @@ Result<SetOutcome> Store::set(NodeId id, const Row& row, std::span<const double>
   std::copy_n(taken.data(), row.width, slot_values(id, row));
   if (!row.live) kept_version_++;
   mark(id, row);
+  if (listener_.heard != nullptr) listener_.heard(listener_.who, id, row);
   if (row.written != nullptr) row.written(the_thing, row);
   return outcome;
 }

@@ -7,6 +7,7 @@
 #include <string>
 #include <string_view>
 #include <unordered_set>
+#include <utility>
 #include <vector>
 
 #include "base/id.h"
@@ -144,6 +145,14 @@ class Store {
   /// Removes a hidden node for good.
   void drop_hidden(NodeId id);
 
+  /// Told of each row that is written through the door, of a view the rows behind it, while somebody listens.
+  struct Listener {
+    void (*heard)(void* who, NodeId id, const Row& row) = nullptr;
+    void* who = nullptr;
+  };
+  /// From here on this one hears; the answer: who did before.
+  Listener listen(Listener listener) { return std::exchange(listener_, listener); }
+
   std::span<const double> kept() const { return kept_; }
   std::span<const double> live() const { return live_; }
   /// Counts writes to kept values and changes of structure: copies are made anew when it has changed.
@@ -236,6 +245,7 @@ class Store {
   StoreView view_;
   std::vector<StoreView*> view_copies_;
   bool saying_ = false;
+  Listener listener_;
 };
 
 }  // namespace limber

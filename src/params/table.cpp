@@ -171,5 +171,10 @@ Row axes(Row row) {
   return row;
 }
 
+Row turns(Row row) {
+  row.turns = true;
+  return row;
+}
+
 }  // namespace rows
 }  // namespace limber

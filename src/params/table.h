@@ -55,6 +55,7 @@ struct Row {
   std::string doc;                   ///< One line for a person.
   std::vector<std::string> choices;  ///< Labels of a choice: 0, 1, 2 …
   bool own_axis = false;  ///< vec3 and flags3 of joints and motors: one number means the own axis (booleans: all).
+  bool turns = false;     ///< vec3: the turn Rx·Ry·Rz, degrees. Between two of them lies a rotation.
   bool live = false;      ///< Stored in the live block: changes by itself, part of every snapshot.
 
   void (*effect)(void* thing) = nullptr;  ///< Brings a changed value into the world; once, before the next step.
@@ -134,6 +135,8 @@ Row state(Row row);
 Row readout(Row row);
 Row live(Row row);
 Row axes(Row row);
+/// The three numbers as a turn.
+Row turns(Row row);
 
 /// A member function of T as effect, view or action of a row.
 template <auto Member>

@@ -103,6 +103,7 @@ void ScriptContext::end_call(bool good) {
         host.send_direct(h.to, std::move(h.message));
       }
     }
+    for (Message& wish : preset_wishes) host.ask_preset(std::move(wish));
     if (reset_wanted) host.ask_reset();
   } else {
     forces.take_back();
@@ -111,6 +112,7 @@ void ScriptContext::end_call(bool good) {
     seeded_with = seeded_before_;
   }
   held.clear();
+  preset_wishes.clear();
 }
 
 Behavior* behavior_of(const ScriptContext& c, NodeId id) {

@@ -97,6 +97,7 @@ struct ScriptContext {
   };
   std::vector<Held> held;
   std::size_t held_text = 0;  ///< Bytes of text in them.
+  std::vector<Message> preset_wishes;
   bool reset_wanted = false;
   ForceQueue forces;
   /// From here on everything that a script does is kept for the undo.

@@ -53,8 +53,8 @@ const Table& Camera::table() {
       {
           vec3("position", "m", numbers_of(start.position), -1e6, 1e6,
                "The world's origin, as the eye has it before it is turned; z below 0 is in front."),
-          vec3("rotation", "deg", numbers_of(start.rotation), -36000, 36000,
-               "Turns the world: about z, then y, then x."),
+          turns(vec3("rotation", "deg", numbers_of(start.rotation), -36000, 36000,
+                     "Turns the world: about z, then y, then x.")),
           number("fovy", "deg", 40, 1, 170, "Field of view from bottom to top."),
           number("aspect", "", 0, 0, 100, "Width by height of the picture; 0: the window's."),
           number("near", "m", 0.05, 1e-4, 1e4, "What is nearer is not drawn."),

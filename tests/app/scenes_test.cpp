@@ -1,4 +1,9 @@
 // Another scene of the folder plays when OSC asks for it.
+#include <fstream>
+#include <iterator>
+
+#include <fmt/format.h>
+
 #include "app/program.h"
 #include "console/private_folder.h"
 
@@ -86,6 +91,44 @@ TEST(Scenes, AWrongOneChangesNothing) {
   // the first one is still the one that is watched
   show.folder.file("scripts/first.lua", "sim:add_body('only_here')\nprint('first again')\n");
   EXPECT_TRUE(show.running.wait_for("first again\n", true));
+}
+
+TEST(Scenes, EachHasPresetsOfItsOwn) {
+  Evening show;
+  const auto change = [&](const std::string& name) {
+    EXPECT_EQ(show.send({"/transport/scene", name, "--wait", "30"}).out, "/transport/playing " + name + "\n");
+  };
+  EXPECT_EQ(show.send({"/scene/wind", "8"}).code, 0);
+  EXPECT_EQ(show.send({"/preset/store", "dusk"}).code, 0);
+  EXPECT_EQ(show.send({"/preset/recall", "script"}).code, 0);
+  EXPECT_EQ(show.send({"/preset/recall", "dusk", "86400"}).code, 0);
+  EXPECT_NE(show.send({"/get", "/preset/progress"}).out, "/preset/progress 1\n");
+  change("second");
+  EXPECT_EQ(show.send({"/get", "/preset/progress"}).out, "/preset/progress 1\n") << "morphs end with their scene";
+  EXPECT_EQ(show.send({"/list/presets"}).out, "/list/presets \"\"\n");
+  EXPECT_NE(show.send({"/preset/recall", "dusk"}).err.find("there is no preset 'dusk'"), std::string::npos);
+  EXPECT_EQ(show.send({"/preset/store", "low"}).code, 0);
+  EXPECT_EQ(show.send({"/physics/sim/gravity", "-1"}).code, 0);
+  EXPECT_EQ(show.send({"/preset/recall", "script"}).code, 0);
+  EXPECT_EQ(show.send({"/get", "/physics/sim/gravity"}).out, "/physics/sim/gravity 0 0 -3\n") << "as the second says";
+  // back and to itself: what was stored is there, on the disk too
+  for (int i = 0; i < 2; i++) {
+    change("first");
+    EXPECT_EQ(show.send({"/list/presets"}).out, "/list/presets dusk\n");
+    EXPECT_EQ(show.send({"/preset/recall", "dusk"}).code, 0);
+    EXPECT_EQ(show.send({"/get", "/scene/wind"}).out, "/scene/wind 8\n");
+  }
+  EXPECT_EQ(show.send({"/preset/store", "late"}).code, 0);
+  show.running.signal(SIGTERM);
+  EXPECT_EQ(show.running.finish().code, 0);
+  const auto stored = [&](const std::string& name) {
+    std::ifstream in(show.folder.path() + "/scripts/" + name);
+    return std::string{std::istreambuf_iterator<char>(in), {}};
+  };
+  for (const char* name : {"dusk", "late"})
+    EXPECT_NE(stored("first.presets.json").find(fmt::format("\"name\": \"{}\"", name)), std::string::npos) << name;
+  EXPECT_NE(stored("second.presets.json").find("\"name\": \"low\""), std::string::npos);
+  EXPECT_EQ(stored("second.presets.json").find("dusk"), std::string::npos);
 }
 
 TEST(Scenes, AFastRunPlaysOne) {

@@ -23,7 +23,7 @@ struct ToyRig {
   Store store;
   World world{store};
   const Table* classes[1] = {&parts_with_a_toy()};
-  Dispatch dispatch{world, classes};
+  Dispatch dispatch{world, nullptr, classes};
 
   ToyRig() {
     for (const char* name : {"arm", "1"}) {

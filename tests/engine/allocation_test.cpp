@@ -77,6 +77,21 @@ sim:on_step(function(dt) part:apply_force(vec3(0, 0, 9.81)) end)
   EXPECT_EQ(during(show, 200), 0U);
 }
 
+TEST(EngineAllocation, NoneWhileMorphsRun) {
+  const SceneFile scene(kEveryBehavior);
+  Show show(scene.path());
+  show.send("/physics/part/friction", 0.9);
+  show.send("/physics/part/mass", 3);
+  show.send("/preset/store", "heavy", "/physics/body/*/part//*");
+  show.send("/preset/recall", "script");
+  show.ticks(1);
+  show.engine.finish_saving();  // on its own thread
+  show.send("/preset/recall", "heavy", 60);
+  EXPECT_EQ(during(show, 300), 0U);
+  EXPECT_GT(show.read("/preset/progress"), 0.05) << "it runs still";
+  EXPECT_LT(show.read("/preset/progress"), 0.5);
+}
+
 TEST(EngineAllocation, NoneWithEveryTypeOfBehaviour) {
   const SceneFile scene(kEveryBehavior);
   Show show(scene.path());

@@ -9,7 +9,9 @@ namespace {
 std::vector<std::string> texts(const PerformerHand& hand) {
   std::vector<std::string> list;
   for (const HandStep& step : hand.in_order()) {
-    list.push_back(step.message != nullptr ? text_of(*step.message) : "back " + *step.address);
+    list.push_back(step.message != nullptr ? text_of(*step.message)
+                   : step.blend != nullptr ? "preset " + step.blend->a->name
+                                           : "back " + *step.address);
   }
   return list;
 }
@@ -46,6 +48,31 @@ TEST(PerformerHand, WhatAReloadGaveBackStandsInTheOrder) {
   EXPECT_EQ(texts(hand),
             (std::vector<std::string>{"back /physics/body/arm/part/tip/mass", "/physics/part/friction 2",
                                       "/physics/part/mass 3", "back /physics/body/arm/part/tip/friction"}));
+}
+
+TEST(PerformerHand, APresetReplacesOneOfTheSameRows) {
+  const auto preset = [](const std::string& name, const std::string& row) {
+    PresetBuilder builder;
+    PresetClass rows;
+    rows.add({row, RowType::number, 1, {}});
+    builder.give(builder.thing("/scene"), std::move(rows), {1});
+    return builder.finish(name, {});
+  };
+  const auto dusk = preset("dusk", "wind");
+  const auto dawn = std::make_shared<const Preset>(Preset{"dawn", {}, dusk->shape, {2}});
+  PerformerHand hand;
+  hand.recall(Blend::of(dusk));
+  hand.remember(message("/scene/wind", 3));
+  hand.give_back("/scene/wind");
+  hand.recall(Blend::of(preset("other", "rain")));
+  EXPECT_EQ(texts(hand),
+            (std::vector<std::string>{"preset dusk", "/scene/wind 3", "back /scene/wind", "preset other"}));
+  hand.recall(Blend::of(dawn));
+  EXPECT_EQ(texts(hand).size(), 4U);
+  EXPECT_EQ(texts(hand).back(), "preset dawn");
+  EXPECT_EQ(texts(hand).front(), "/scene/wind 3");
+  for (int i = 0; i < 1000; i++) hand.recall(Blend::of(preset("flood", "rain")));
+  EXPECT_EQ(texts(hand).size(), 66U) << "messages, what was given back, and the newest 64";
 }
 
 TEST(PerformerHand, TwoNamesAreNotOneLongName) {

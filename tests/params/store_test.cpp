@@ -7,6 +7,8 @@
 #include <cmath>
 #include <limits>
 #include <set>
+#include <string>
+#include <vector>
 
 #include "params/toy.h"
 
@@ -70,6 +72,31 @@ TEST_F(StoreTest, ClampsEachNumberAndSaysSo) {
     const Numbers kept = read(store, id, c.row);
     for (std::size_t i = 0; i < kept.size(); i++) EXPECT_NEAR(kept[i], c.kept[i], 1e-15) << c.row << c.given[0];
   }
+}
+
+TEST_F(StoreTest, ARotationThatWasReadCanBeSetAgainToTheBit) {
+  ASSERT_TRUE(set(store, id, "rotation", {0.1, -0.7, 0.3, 0.2}));
+  for (int i = 0; i < 100; i++) {
+    const Numbers now = read(store, id, "rotation");
+    ASSERT_TRUE(set(store, id, "rotation", now));
+    ASSERT_EQ(read(store, id, "rotation"), now);
+  }
+}
+
+TEST_F(StoreTest, WhoListensHearsEachRowThatIsWritten) {
+  std::vector<std::string> heard;
+  const auto hear = [](void* who, NodeId, const Row& row) {
+    static_cast<std::vector<std::string>*>(who)->push_back(row.name);
+  };
+  const Store::Listener before = store.listen({hear, &heard});
+  EXPECT_EQ(before.heard, nullptr);
+  EXPECT_TRUE(set(store, id, "mass", {2}));
+  EXPECT_TRUE(set(store, id, "mass", {2})) << "the same value too";
+  EXPECT_FALSE(set(store, id, "mass", {kNan}));
+  EXPECT_TRUE(set(store, id, "position", {1, 2, 3}));
+  EXPECT_EQ(store.listen(before).who, &heard);
+  EXPECT_TRUE(set(store, id, "mass", {3}));
+  EXPECT_EQ(heard, (std::vector<std::string>{"mass", "mass", "position"}));
 }
 
 TEST_F(StoreTest, RefusesWhatIsNoValueAndAppliesNothingOfIt) {

@@ -33,7 +33,7 @@ local function add_functions(env)
   env.ipairs, env.pairs, env.tostring = P.ipairs, P.pairs, P.show
   -- what all scripts share is not to be changed past its metatable
   function env.rawset(t, key, value)
-    if t == P.osc or t == P.params then fail("rawset: %s can't be changed", P.show(t)) end
+    if t == P.osc or t == P.params or t == P.presets then fail("rawset: %s can't be changed", P.show(t)) end
     return rawset(t, key, value)
   end
   -- a long text is walked in C
@@ -113,6 +113,7 @@ function P.make_env(file)
   env.require = make_require(env, file)
   env.vec3, env.quat, env.rgb, env.rng = P.vec3, P.make_quat(), P.rgb, P.R(-2 - file, 0)
   env.sim, env.osc, env.params, env.visuals = P.sim, P.osc, P.params, P.visuals
+  env.presets = P.presets
   if kind == "scene" then env.state = P.first_state() end
   return setmetatable(env, {
     __index = function(_, key)
@@ -149,6 +150,7 @@ function P.entry.names()
     end
   end
   for _, key in ipairs(P.osc_members) do lines[#lines + 1] = "osc." .. key end
+  for _, key in ipairs(P.preset_members) do lines[#lines + 1] = "presets." .. key end
   for _, name in ipairs { "sim", "body", "part", "joint", "motor", "shape", "visuals", "camera" } do
     local class = P.classes[name]
     for _, key in ipairs(P.sorted_keys(class.getters)) do lines[#lines + 1] = name .. "." .. key end

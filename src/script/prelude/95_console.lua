@@ -222,6 +222,8 @@ local function members(value, separator)
     add_members(words, class, separator)
   elseif value == P.osc then
     for _, key in ipairs(P.osc_members) do words[key] = true end
+  elseif value == P.presets then
+    for _, key in ipairs(P.preset_members) do words[key] = true end
   elseif value == P.params then
     add_keys(words, P.parameter_names())
   elseif type(value) == "cdata" then

@@ -1,0 +1,95 @@
+// Stores, recalls and glides, by messages as a performer does.
+#include "app/bench_preset.h"
+
+#include <fmt/format.h>
+
+#include "app/bench_arms.h"
+#include "app/bench_times.h"
+#include "base/check.h"
+
+namespace limber {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+// the arms with a hand; times are the processor's, so that other programs' turns do not count
+class Stand {
+ public:
+  explicit Stand(int arms) : arms_(bench_arm_scene(arms)) {
+    for (int i = 0; i < 3; i++) arms_.tick();
+    send({"/transport/pause", {}});
+    empty_ = ticks(8).at(0.5);
+  }
+  Engine& engine() { return arms_.engine(); }
+
+  Samples ticks(int count) {
+    Samples all;
+    for (int i = 0; i < count; i++) all.add(tick());
+    return all;
+  }
+  /// Seconds that the message takes of its tick, while time stands still: with what it sets off in Bullet.
+  double send(Message message) {
+    arms_.link().inbox.push({{std::move(message)}, {}});
+    const double seconds = tick() - empty_;
+    LIMBER_CHECK(arms_.link().counters.refused.load() == 0);
+    return seconds;
+  }
+  double preset(const char* what, const char* name) { return send({fmt::format("/preset/{}", what), {Arg::of(name)}}); }
+
+ private:
+  double tick() {
+    const double start = thread_seconds();
+    arms_.tick();
+    return thread_seconds() - start;
+  }
+
+  BenchArms arms_;
+  double empty_ = 0;  // a tick without a message
+};
+
+Json least_and_median(const Samples& samples) {
+  return {{"min", rounded(samples.at(0) * 1e3, 2)}, {"median", rounded(samples.at(0.5) * 1e3, 2)}};
+}
+
+}  // namespace
+
+Json bench_preset(const BenchOptions& options) {
+  const int count = options.ticks > 0 ? options.ticks : 8;
+  Stand stand(1000);
+  const double first_store = stand.preset("store", "a");
+  Samples store, recall;
+  for (int i = 0; i < count; i++) store.add(stand.preset("store", "again"));
+
+  double value = 0.1;
+  for (const char* row : {"mass", "linear_damping", "angular_damping", "friction", "rolling_friction", "restitution"})
+    stand.send({fmt::format("/physics/part/{}", row), {Arg::of(value += 0.05)}});
+  stand.preset("store", "b");
+  const double first_recall = stand.preset("recall", "a");
+  for (int i = 0; i < count; i++) recall.add(stand.preset("recall", i % 2 == 0 ? "b" : "a"));
+
+  stand.preset("recall", "b");
+  // ticks with a morph and without, by turns: they take longer as the arms fall
+  stand.send({"/transport/play", {}});
+  Samples quiet, morphing;
+  for (int i = 0; i < count; i++) {
+    quiet.add(stand.ticks(1).at(0));
+    stand.send({"/preset/recall", {Arg::of(i % 2 == 0 ? "b" : "a"), Arg::of(3600.0)}});
+    for (int k = 0; k < 2; k++) morphing.add(stand.ticks(1).at(0));
+    stand.send({"/preset/stop", {}});
+  }
+  const double cost = morphing.at(0.5) - quiet.at(0.5);
+  const Preset& preset = *stand.engine().presets().list().front();
+  return {{"things", preset.shape->things().size()},
+          {"rows", preset.shape->row_count()},
+          {"numbers", preset.values.size()},
+          {"tick_ms", least_and_median(quiet)},
+          {"first_store_ms", rounded(first_store * 1e3, 2)},
+          {"store_ms", least_and_median(store)},
+          {"first_recall_ms", rounded(first_recall * 1e3, 2)},
+          {"recall_ms", least_and_median(recall)},
+          {"morph_ms", rounded(cost * 1e3, 2)},
+          {"morph_percent_of_tick", rounded(100 * cost / quiet.at(0.5), 2)}};
+}
+
+}  // namespace limber

@@ -1,0 +1,62 @@
+// Reads both files, writes one.
+#include "app/preset.h"
+
+#include <algorithm>
+#include <fstream>
+#include <iterator>
+#include <utility>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "app/exit_code.h"
+#include "app/paths.h"
+#include "base/text.h"
+#include "engine/preset_file.h"
+#include "engine/preset_import.h"
+
+namespace limber {
+
+namespace {
+
+// behind those that are there, under names that nobody has
+void append(PresetList& list, const PresetList& more) {
+  for (const auto& preset : more) {
+    std::string name = preset->name;
+    const auto taken = [&] {
+      return std::any_of(list.begin(), list.end(), [&](const auto& p) { return p->name == name; });
+    };
+    for (int n = 2; taken(); n++) name = fmt::format("{} {}", shortened(preset->name, 100), n);
+    list.push_back(std::make_shared<const Preset>(Preset{name, preset->choice, preset->shape, preset->values}));
+  }
+}
+
+}  // namespace
+
+int preset_command(const PresetCommand& command) {
+  std::ifstream in(command.file, std::ios::binary);
+  if (!in)
+    return fail(kInput,
+                fmt::format("{}: there is no such file; in Max, pattrstorage writes one by the message writejson",
+                            command.file));
+  const std::string text{std::istreambuf_iterator<char>(in), {}};
+  const Result<PresetsRead> imported = import_pattrstorage(text);
+  if (!imported) return fail(kInput, fmt::format("{}: {}", command.file, imported.error()));
+  std::vector<std::string> looked;
+  const std::string scene = find_scene(command.scene, looked);
+  if (scene.empty()) return fail(kInput, no_scene(command.scene, looked));
+  PresetFile file(PresetFile::beside(scene));
+  Result<PresetsRead> before = file.load();
+  if (!before) return fail(kInput, before.error());
+  append(before->presets, imported->presets);
+  std::string said;
+  if (const Result<void> saved = file.save(before->presets, said); !saved)
+    return fail(kMachine, fmt::format("{}: {}", printable(file.path()), saved.error()));
+  for (const std::string& problem : imported->problems) fmt::print(stderr, "limber: {}\n", printable(problem));
+  if (!said.empty()) fmt::print(stderr, "limber: {}\n", said);
+  fmt::print("{} presets are in {} now, {} of them new\n", before->presets.size(), printable(file.path()),
+             imported->presets.size());
+  return kFine;
+}
+
+}  // namespace limber

@@ -1,0 +1,151 @@
+// A list of rows with both their ends, gone through at each tick.
+#include "engine/morph.h"
+
+#include <algorithm>
+#include <array>
+#include <utility>
+
+#include "base/text.h"
+#include "engine/recall.h"
+#include "sim/behavior.h"
+
+namespace limber {
+
+namespace {
+
+constexpr std::array<std::string_view, 4> kEasings = {"linear", "smooth", "in", "out"};
+
+bool is_member(const Store& store, NodeId id) {
+  return store.table(id).name() == "behavior" && static_cast<const Behavior*>(store.thing(id))->group() != nullptr;
+}
+
+}  // namespace
+
+std::optional<Easing> easing_of(std::string_view name) {
+  for (std::size_t i = 0; i < kEasings.size(); i++) {
+    if (same_name(name, kEasings[i])) return static_cast<Easing>(i);
+  }
+  return {};
+}
+
+std::string_view easing_names() { return "linear, smooth, in, out"; }
+
+double eased(Easing easing, double part) {
+  switch (easing) {
+    case Easing::smooth:
+      return part * part * (3 - 2 * part);
+    case Easing::in:
+      return part * part;
+    case Easing::out:
+      return part * (2 - part);
+    case Easing::linear:
+      break;
+  }
+  return part;
+}
+
+Morph::Morph(const Store& store, const PresetBinding& binding, Blend to, double time, double seconds, Easing easing)
+    : to_(std::move(to)),
+      except_(binding.except()),
+      begin_(time),
+      seconds_(seconds),
+      easing_(easing),
+      structure_(store.structure_version()) {
+  bool group_moves = false;
+  each_value(binding, to_, [&](const PresetBinding::Thing& thing, const Row& row, const double* values) {
+    const double* const now = store.values(thing.id, row);
+    const bool moves = !same_bits(values, now, row.width);
+    group_moves = group_moves || (moves && row.written != nullptr && store.table(thing.id).name() == "group");
+    if (!moves && !(group_moves && is_member(store, thing.id))) return;
+    steps_.push_back({thing.id, &row, thing.number, static_cast<std::uint32_t>(values_.size()), false});
+    values_.insert(values_.end(), now, now + row.width);
+    values_.insert(values_.end(), values, values + row.width);
+  });
+  left_ = steps_.size();
+  index(store);
+}
+
+void Morph::index(const Store& store) {
+  first_.assign(store.view()->slot_count, static_cast<std::uint32_t>(steps_.size()));
+  for (std::size_t i = steps_.size(); i-- > 0;) {
+    if (!steps_[i].id.null()) first_[steps_[i].id.slot] = static_cast<std::uint32_t>(i);
+  }
+}
+
+void Morph::release(NodeId id, const Row& row) {
+  if (id.slot >= first_.size()) return;
+  for (std::size_t i = first_[id.slot]; i < steps_.size() && steps_[i].id == id; i++) {
+    if (steps_[i].row != &row || steps_[i].over) continue;
+    steps_[i].over = true;
+    left_--;
+  }
+}
+
+double Morph::part(double time) const { return seconds_ > 0 ? std::clamp((time - begin_) / seconds_, 0.0, 1.0) : 1; }
+
+bool Morph::advance(Store& store, double time) {
+  if (structure_ != store.structure_version()) find_again(store);
+  const double now = part(time);
+  const double amount = now >= 1 ? 1 : eased(easing_, now);
+  std::array<double, 4> out{};
+  for (const Step& step : steps_) {
+    if (step.over || step.id.null()) continue;
+    const double* const from = values_.data() + step.at;
+    mix(*step.row, from, from + step.row->width, amount, out.data());
+    if (same_bits(out.data(), std::as_const(store).values(step.id, *step.row), step.row->width)) continue;
+    (void)store.set(step.id, *step.row,
+                    {out.data(), step.row->width});  // the row takes what lies between two of its own
+  }
+  return now < 1 && left_ > 0;
+}
+
+// things came or went: what stands under the same name goes on from where the morph is
+void Morph::find_again(const Store& store) {
+  structure_ = store.structure_version();
+  const bool all_there = std::all_of(steps_.begin(), steps_.end(), [&](const Step& s) { return store.alive(s.id); });
+  if (all_there) return;
+  const auto binding = PresetBinding::make(store, to_.a->shape, except_, false);
+  if (!binding) return;  // its patterns were right when it began
+  std::vector<const PresetBinding::Thing*> things(to_.a->shape->things().size());
+  for (const PresetBinding::Thing& thing : (*binding)->things()) things[thing.number] = &thing;
+  for (Step& step : steps_) {
+    const PresetBinding::Thing* const thing = things[step.thing];
+    step.id = {};
+    if (thing == nullptr) continue;
+    for (const PresetBinding::FitRow& fit : (*binding)->fit(*thing).rows) {
+      const bool same =
+          fit.row->name == step.row->name && fit.row->type == step.row->type && fit.row->choices == step.row->choices;
+      if (!same) continue;
+      step.id = thing->id;
+      step.row = fit.row;
+      break;
+    }
+  }
+  index(store);
+}
+
+void Morphs::advance(Store& store, double time) {
+  std::erase_if(morphs_, [&](Morph& morph) { return !morph.advance(store, time); });
+}
+
+void Morphs::release(NodeId id, const Row& row) {
+  for (Morph& morph : morphs_) morph.release(id, row);
+}
+
+void Morphs::release(const PresetBinding& binding) {
+  if (morphs_.empty()) return;
+  for (const PresetBinding::Thing& thing : binding.things()) {
+    for (const PresetBinding::FitRow& fit : binding.fit(thing).rows) {
+      if ((thing.left_alone >> fit.row->index & 1u) == 0) release(thing.id, *fit.row);
+    }
+  }
+  std::erase_if(morphs_, [](const Morph& morph) { return !morph.moves(); });
+}
+
+double Morphs::part(double time) const {
+  double least = 1;
+  for (const Morph& morph : morphs_) least = std::min(least, morph.part(time));
+  return least;
+}
+
+}  // namespace limber

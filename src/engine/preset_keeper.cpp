@@ -1,0 +1,58 @@
+// The lock is held to take what is wanted, never while it is written.
+#include "engine/preset_keeper.h"
+
+#include <pthread.h>
+
+#include <utility>
+
+#include "base/log.h"
+#include "base/text.h"
+
+namespace limber {
+
+PresetKeeper::~PresetKeeper() {
+  {
+    const std::scoped_lock lock(mutex_);
+    end_ = true;
+  }
+  changed_.notify_all();
+  if (thread_.joinable()) thread_.join();
+}
+
+void PresetKeeper::save(std::shared_ptr<const PresetList> presets) {
+  {
+    const std::scoped_lock lock(mutex_);
+    wanted_.swap(presets);
+  }
+  changed_.notify_all();
+  if (!thread_.joinable()) thread_ = std::thread([this] { run(); });
+}
+
+void PresetKeeper::finish() {
+  std::unique_lock lock(mutex_);
+  changed_.wait(lock, [this] { return wanted_ == nullptr && !writing_; });
+}
+
+void PresetKeeper::run() {
+  pthread_setname_np(pthread_self(), "limber-presets");
+  std::unique_lock lock(mutex_);
+  while (true) {
+    changed_.wait(lock, [this] { return wanted_ != nullptr || end_; });
+    if (wanted_ == nullptr) return;
+    const std::shared_ptr<const PresetList> presets = std::exchange(wanted_, nullptr);
+    writing_ = true;
+    lock.unlock();
+    std::string said;
+    const Result<void> saved = file_.save(*presets, said);
+    if (!said.empty()) log_warning("{}", said);
+    if (!saved) {
+      log_error("{}: {}", printable(file_.path()), saved.error());
+      failed_(saved.error());
+    }
+    lock.lock();
+    writing_ = false;
+    changed_.notify_all();
+  }
+}
+
+}  // namespace limber

@@ -1,0 +1,215 @@
+// A walk over the store for a plan; along the plan for a preset.
+#include "engine/preset_taker.h"
+
+#include <algorithm>
+#include <bit>
+#include <map>
+#include <unordered_map>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "base/text.h"
+#include "params/catalog.h"
+#include "sim/part.h"
+
+namespace limber {
+
+namespace {
+
+constexpr std::size_t kMostPlans = 8;
+
+PresetRow preset_row(const Row& row) {
+  const RowType type = row.type == RowType::integer ? RowType::number : row.type;
+  return {row.name, type, row.width, row.choices};
+}
+
+}  // namespace
+
+class PresetTaker::Planning {
+ public:
+  Planning(const Store& store, const PresetChoice& choice) : store_(store) { plan_.choice = choice; }
+
+  Result<Plan> make() {
+    const PresetChoice& choice = plan_.choice;
+    if (const Result<void> chosen = choose(); !chosen) return Error{chosen.error()};
+    things_.assign(store_.view()->slot_count, 0);
+    store_.walk(store_.root(), [&](NodeId id) { add(id); });
+    if (!choice.rows.empty() && shape_->row_count() == 0)
+      return Error{fmt::format("'{}' reaches no property", printable(fmt::format("{}", fmt::join(choice.rows, " "))))};
+    plan_.structure = store_.structure_version();
+    plan_.shape = shape_;
+    return std::move(plan_);
+  }
+
+ private:
+  // rows by slot, of those that the patterns reach
+  Result<void> choose() {
+    for (const std::string& pattern : plan_.choice.rows) {
+      PatternBudget budget;
+      const Result<std::vector<Place>> places = match_places(store_, pattern, budget);
+      if (!places) return Error{places.error()};
+      for (const Place& place : *places) {
+        // a thing stands for all that it has, and for what is in it
+        if (place.row == nullptr)
+          store_.walk(place.node, [&](NodeId id) { choose(id, ~std::uint64_t{0}); });
+        else
+          choose(place.node, std::uint64_t{1} << place.row->index);
+      }
+    }
+    return {};
+  }
+
+  void choose(NodeId id, std::uint64_t rows) {
+    chosen_[id.slot] |= rows;
+    part_chosen_ |= &store_.table(id) == &Part::table();
+  }
+
+  // what a class may give: properties, and of parts the states that are asked for
+  struct Kind {
+    std::uint64_t rows = 0;
+    std::uint64_t properties = 0;
+    std::vector<const Row*> picky;  // of these some things take none: the mass of a part that never moves
+  };
+  // some rows of a class, as a thing that has them gives them
+  struct Cut {
+    std::uint32_t rows = 0;
+    std::vector<Piece> pieces;  // from where the thing's own numbers begin
+  };
+
+  const Kind& kind_of(const Table& table) {
+    if (last_kind_.first == &table) return *last_kind_.second;
+    const auto [known, fresh] = kinds_.try_emplace(&table);
+    Kind& kind = known->second;
+    last_kind_ = {&table, &kind};
+    if (!fresh) return kind;
+    const PresetChoice& choice = plan_.choice;
+    for (const Row& row : table.rows()) {
+      const bool pose = row.name == "position" || row.name == "rotation";
+      const bool motion = row.name == "linear_velocity" || row.name == "angular_velocity";
+      const bool wanted = row.kind == RowKind::property || (&table == &Part::table() && row.kind == RowKind::state &&
+                                                            ((pose && choice.poses) || (motion && choice.velocities)));
+      if (!wanted || !row.stored()) continue;
+      const std::uint64_t bit = std::uint64_t{1} << row.index;
+      kind.rows |= bit;
+      if (row.kind == RowKind::property) kind.properties |= bit;
+      if (row.refuse != nullptr) kind.picky.push_back(&row);
+    }
+    return kind;
+  }
+
+  void add(NodeId id) {
+    const Table& table = store_.table(id);
+    const Kind& kind = kind_of(table);
+    std::uint64_t rows = kind.rows;
+    if (rows != 0 && !plan_.choice.rows.empty()) {
+      const auto chosen = chosen_.find(id.slot);
+      // where parts are is asked for by its own word: of the parts that the patterns reach, else of all
+      const bool with_states = chosen != chosen_.end() || !part_chosen_;
+      const std::uint64_t states = with_states ? rows & ~kind.properties : 0;
+      rows = (chosen == chosen_.end() ? 0 : rows & chosen->second) | states;
+    }
+    for (const Row* row : kind.picky) {
+      const std::uint64_t bit = std::uint64_t{1} << row->index;
+      if ((rows & bit) != 0 && !row->refuse(store_.thing(id), store_.values(id, *row))) rows &= ~bit;
+    }
+    if (rows == 0) return;
+    const Cut& cut = cut_of(table, rows);
+    shape_->give(thing(id), cut.rows);
+    const NodeSlot& slot = store_.view()->slots[id.slot];
+    for (const Piece& piece : cut.pieces)
+      append({(piece.live ? slot.live : slot.kept) + piece.from, piece.count, piece.live}, plan_.pieces);
+  }
+
+  static void append(const Piece& piece, std::vector<Piece>& pieces) {
+    const bool joins =
+        !pieces.empty() && pieces.back().live == piece.live && pieces.back().from + pieces.back().count == piece.from;
+    if (joins) {
+      pieces.back().count += piece.count;
+    } else {
+      pieces.push_back(piece);
+    }
+  }
+
+  std::uint32_t thing(NodeId id) {
+    if (id == store_.root()) return 0;
+    std::uint32_t& known = things_[id.slot];
+    if (known == 0) {
+      const std::uint32_t parent = thing(store_.parent(id));
+      known = shape_->add(parent, store_.name(id));
+    }
+    return known;
+  }
+
+  const Cut& cut_of(const Table& table, std::uint64_t rows) {
+    const std::pair<const Table*, std::uint64_t> key{&table, rows};
+    if (last_cut_.second != nullptr && last_cut_.first == key) return *last_cut_.second;
+    const auto [known, fresh] = cuts_.try_emplace(key);
+    Cut& cut = known->second;
+    last_cut_ = {key, &cut};
+    if (!fresh) return cut;
+    auto made = std::make_shared<PresetClass>();
+    for (const Row& row : table.rows()) {
+      if ((rows >> row.index & 1u) == 0) continue;
+      made->add(preset_row(row));
+      append({row.offset, row.width, row.live}, cut.pieces);
+    }
+    cut.rows = shape_->add_class(std::move(made));
+    return cut;
+  }
+
+  const Store& store_;
+  Plan plan_;
+  std::shared_ptr<PresetShape> shape_ = std::make_shared<PresetShape>();
+  std::unordered_map<std::uint32_t, std::uint64_t> chosen_;  // by slot, what the patterns reach
+  bool part_chosen_ = false;
+  std::unordered_map<const Table*, Kind> kinds_;
+  std::map<std::pair<const Table*, std::uint64_t>, Cut> cuts_;
+  // neighbours are alike
+  std::pair<const Table*, const Kind*> last_kind_{};
+  std::pair<std::pair<const Table*, std::uint64_t>, const Cut*> last_cut_{};
+  std::vector<std::uint32_t> things_;  // by slot
+};
+
+Result<std::shared_ptr<const Preset>> PresetTaker::take(const Store& store, std::string name,
+                                                        const PresetChoice& choice) {
+  std::erase_if(plans_, [&](const Plan& plan) { return plan.structure != store.structure_version(); });
+  auto known = std::find_if(plans_.begin(), plans_.end(), [&](const Plan& plan) { return plan.choice == choice; });
+  if (known == plans_.end()) {
+    Result<Plan> made = Planning(store, choice).make();
+    if (!made) return Error{made.error()};
+    if (plans_.size() >= kMostPlans) plans_.erase(plans_.begin());
+    plans_.push_back(std::move(*made));
+    known = plans_.end() - 1;
+  }
+  return copy(store, *known, std::move(name));
+}
+
+std::shared_ptr<const Preset> PresetTaker::copy(const Store& store, const Plan& plan, std::string name) {
+  auto preset = std::make_shared<Preset>(Preset{std::move(name), plan.choice, plan.shape, {}});
+  preset->values.reserve(plan.shape->width());
+  for (const Piece& piece : plan.pieces) {
+    const double* const from = (piece.live ? store.live() : store.kept()).data() + piece.from;
+    preset->values.insert(preset->values.end(), from, from + piece.count);
+  }
+  return preset;
+}
+
+std::shared_ptr<const Preset> PresetTaker::take_script(const Store& store) {
+  Result<Plan> plan = Planning(store, {}).make();  // without patterns nothing can be wrong
+  auto preset = std::make_shared<Preset>(*copy(store, *plan, "script"));
+  const Result<Place> scene = find_place(store, "/scene", false);
+  if (!scene || scene->row != nullptr) return preset;
+  const Table& table = store.table(scene->node);
+  for (const PresetShape::Thing& thing : preset->shape->things()) {
+    const PresetClass* const rows = preset->shape->rows(thing);
+    if (rows == nullptr || thing.parent != 0 || preset->shape->name(thing) != "scene") continue;
+    for (std::size_t i = 0; i < rows->rows.size(); i++) {
+      const Row& row = table.at(rows->rows[i].name);
+      std::copy_n(row.initial.begin(), row.width, preset->values.begin() + thing.at + rows->offsets[i]);
+    }
+  }
+  return preset;
+}
+
+}  // namespace limber

@@ -1,0 +1,74 @@
+// A pattrstorage as Max writes it, and what is none.
+#include "engine/preset_import.h"
+
+#include <gtest/gtest.h>
+
+namespace limber {
+namespace {
+
+// the value of a row of a preset, as text_of writes it
+std::string written(const PresetsRead& read) { return text_of(read.presets); }
+
+TEST(PresetImport, SlotsBecomePresets) {
+  // tabs and commas as pattrstorage has them
+  const auto read = import_pattrstorage(
+      "{\n\t\"pattrstorage\" : \t{\n\t\t\"name\" : \"store\",\n\t\t\"slots\" : \t\t{\n"
+      "\t\t\t\"10\" : \t\t\t{\n\t\t\t\t\"id\" : 10,\n\t\t\t\t\"data\" : \t\t\t\t{\n"
+      "\t\t\t\t\t\"wind\" : [ 3 ]\n\t\t\t\t}\n\n\t\t\t}\n,\n"
+      "\t\t\t\"2\" : \t\t\t{\n\t\t\t\t\"id\" : 2,\n\t\t\t\t\"name\" : \"dusk\",\n\t\t\t\t\"data\" : \t\t\t\t{\n"
+      "\t\t\t\t\t\"wind\" : [ 0.5 ],\n\t\t\t\t\t\"physics::sim::gravity\" : [ 0.0, 0.0, -1.6 ],\n"
+      "\t\t\t\t\t\"/physics/body/arm1/part/tip/mass\" : [ 2.0 ],\n\t\t\t\t\t\"style\" : [ \"wild\" ],\n"
+      "\t\t\t\t\t\"list\" : [ 1, 2 ],\n\t\t\t\t\t\"mixed\" : [ 1, \"a\", 3 ]\n\t\t\t\t}\n\t\t\t}\n\t\t}\n\t}\n}\n");
+  ASSERT_TRUE(read.ok()) << read.error();
+  EXPECT_EQ(written(*read), R"({
+  "limber presets": 1,
+  "presets": [
+    {
+      "name": "dusk",
+      "values": {
+        "/physics/body/arm1/part/tip": {
+          "mass": 2
+        },
+        "/physics/sim": {
+          "gravity": [0, 0, -1.6]
+        },
+        "/scene": {
+          "style": "wild",
+          "wind": 0.5
+        }
+      }
+    },
+    {
+      "name": "slot 10",
+      "values": {
+        "/scene": {
+          "wind": 3
+        }
+      }
+    }
+  ]
+}
+)");
+  EXPECT_EQ(read->problems, (std::vector<std::string>{"preset 'dusk': 'list' is left out: no row has such a value",
+                                                      "preset 'dusk': 'mixed' is left out: no row has such a value"}));
+}
+
+TEST(PresetImport, WhatIsNoneIsRefused) {
+  for (const char* text : {"", "{", "[]", "3", "{ \"pattrstorage\" : 3 ", "\xff"})
+    EXPECT_EQ(import_pattrstorage(text).error(),
+              "it is no JSON file; in Max, pattrstorage writes one by the message writejson")
+        << text;
+  for (const char* text : {"{}", R"({ "pattrstorage": 3 })", R"({ "pattrstorage": { "slots": [] } })"})
+    EXPECT_EQ(import_pattrstorage(text).error(),
+              "it is no pattrstorage; in Max, it writes one by the message writejson");
+  const auto odd = import_pattrstorage(R"({ "pattrstorage": { "slots": { "x": {}, "1": { "data": 3 },
+      "3": { "name": "script", "data": { "": [1], "::": [1], "a::": [1], "a": [] } },
+      "2": { "name": "slot 1" } } } })");
+  ASSERT_TRUE(odd.ok()) << odd.error();
+  std::vector<std::string> names;
+  for (const auto& preset : odd->presets) names.push_back(preset->name);
+  EXPECT_EQ(names, (std::vector<std::string>{"slot 1", "slot 1 2", "slot 3"}));
+}
+
+}  // namespace
+}  // namespace limber
