@@ -224,6 +224,7 @@ void Engine::pass(bool may_step) {
   make_image(asks_);
   if (was_paused_ != stage_->transport.paused()) send_transport();
   times_.snapshot = watch.lap();
+  presets_.prepare(stage_->world);
   if (stage_->scene != nullptr) stage_->scene->collect_garbage();
   times_.collector = watch.lap();
 }

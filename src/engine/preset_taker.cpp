@@ -30,16 +30,37 @@ class PresetTaker::Planning {
  public:
   Planning(const Store& store, const PresetChoice& choice) : store_(store) { plan_.choice = choice; }
 
-  Result<Plan> make() {
-    const PresetChoice& choice = plan_.choice;
-    if (const Result<void> chosen = choose(); !chosen) return Error{chosen.error()};
+  /// What the patterns reach. First, and once.
+  Result<void> begin() {
+    const Result<void> chosen = choose();
     things_.assign(store_.view()->slot_count, 0);
-    store_.walk(store_.root(), [&](NodeId id) { add(id); });
+    way_.push_back(store_.root());
+    return chosen;
+  }
+  /// Looks at so many things; true: at all of them.
+  bool go(std::size_t count) {
+    while (!way_.empty()) {
+      if (count-- == 0) return false;
+      const NodeId id = way_.back();
+      way_.pop_back();
+      add(id);
+      const std::span<const NodeId> children = store_.children(id);
+      way_.insert(way_.end(), children.rbegin(), children.rend());
+    }
+    return true;
+  }
+  Result<Plan> finish() {
+    const PresetChoice& choice = plan_.choice;
     if (!choice.rows.empty() && shape_->row_count() == 0)
       return Error{fmt::format("'{}' reaches no property", printable(fmt::format("{}", fmt::join(choice.rows, " "))))};
-    plan_.structure = store_.structure_version();
     plan_.shape = shape_;
     return std::move(plan_);
+  }
+  static Result<Plan> make(const Store& store, const PresetChoice& choice) {
+    Planning planning(store, choice);
+    if (const Result<void> begun = planning.begin(); !begun) return Error{begun.error()};
+    (void)planning.go(SIZE_MAX);
+    return planning.finish();
   }
 
  private:
@@ -169,20 +190,57 @@ class PresetTaker::Planning {
   std::pair<const Table*, const Kind*> last_kind_{};
   std::pair<std::pair<const Table*, std::uint64_t>, const Cut*> last_cut_{};
   std::vector<std::uint32_t> things_;  // by slot
+  std::vector<NodeId> way_;            // to be looked at, the next one last
 };
+
+PresetTaker::PresetTaker() = default;
+PresetTaker::~PresetTaker() = default;
+
+void PresetTaker::forget_store() {
+  plans_.clear();
+  ahead_.reset();
+  quiet_ = 0;
+}
+
+const PresetTaker::Plan* PresetTaker::known(const PresetChoice& choice) const {
+  const auto at = std::find_if(plans_.begin(), plans_.end(), [&](const Plan& plan) { return plan.choice == choice; });
+  return at == plans_.end() ? nullptr : &*at;
+}
+
+const PresetTaker::Plan& PresetTaker::keep(Plan plan) {
+  if (plans_.size() >= kMostPlans) plans_.erase(plans_.begin());
+  return plans_.emplace_back(std::move(plan));
+}
+
+void PresetTaker::prepare(const Store& store) {
+  if (structure_ != store.structure_version()) {
+    structure_ = store.structure_version();
+    forget_store();
+  }
+  if (quiet_ <= kQuiet) quiet_++;
+  if (quiet_ <= kQuiet || known({}) != nullptr) return;
+  if (ahead_ == nullptr) {
+    ahead_ = std::make_unique<Planning>(store, PresetChoice{});
+    (void)ahead_->begin();  // there are no patterns
+  }
+  if (!ahead_->go(kSlice)) return;
+  keep(std::move(*ahead_->finish()));
+  ahead_.reset();
+}
 
 Result<std::shared_ptr<const Preset>> PresetTaker::take(const Store& store, std::string name,
                                                         const PresetChoice& choice) {
-  std::erase_if(plans_, [&](const Plan& plan) { return plan.structure != store.structure_version(); });
-  auto known = std::find_if(plans_.begin(), plans_.end(), [&](const Plan& plan) { return plan.choice == choice; });
-  if (known == plans_.end()) {
-    Result<Plan> made = Planning(store, choice).make();
-    if (!made) return Error{made.error()};
-    if (plans_.size() >= kMostPlans) plans_.erase(plans_.begin());
-    plans_.push_back(std::move(*made));
-    known = plans_.end() - 1;
+  if (structure_ != store.structure_version()) {
+    structure_ = store.structure_version();
+    forget_store();
   }
-  return copy(store, *known, std::move(name));
+  if (const Plan* plan = known(choice)) return copy(store, *plan, std::move(name));
+  const bool begun = ahead_ != nullptr && choice == PresetChoice{};
+  if (begun) (void)ahead_->go(SIZE_MAX);
+  Result<Plan> made = begun ? ahead_->finish() : Planning::make(store, choice);
+  if (begun) ahead_.reset();
+  if (!made) return Error{made.error()};
+  return copy(store, keep(std::move(*made)), std::move(name));
 }
 
 std::shared_ptr<const Preset> PresetTaker::copy(const Store& store, const Plan& plan, std::string name) {
@@ -196,7 +254,7 @@ std::shared_ptr<const Preset> PresetTaker::copy(const Store& store, const Plan& 
 }
 
 std::shared_ptr<const Preset> PresetTaker::take_script(const Store& store) {
-  Result<Plan> plan = Planning(store, {}).make();  // without patterns nothing can be wrong
+  Result<Plan> plan = Planning::make(store, {});  // without patterns nothing can be wrong
   auto preset = std::make_shared<Preset>(*copy(store, *plan, "script"));
   const Result<Place> scene = find_place(store, "/scene", false);
   if (!scene || scene->row != nullptr) return preset;

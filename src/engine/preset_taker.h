@@ -15,10 +15,25 @@ namespace limber {
 
 class PresetTaker {
  public:
+  /// Things that prepare() looks at, at a time.
+  static constexpr std::size_t kSlice = 500;
+  /// For so many calls of prepare() nothing has come or gone before it begins.
+  static constexpr int kQuiet = 30;
+
+  PresetTaker();
+  ~PresetTaker();
+  PresetTaker(const PresetTaker&) = delete;
+  PresetTaker& operator=(const PresetTaker&) = delete;
+
+  /// A little of the way to a preset of every property, so that the first one in a large world costs no more than the
+  /// next: once a tick.
+  void prepare(const Store& store);
+  /// Whether that is done.
+  bool ready(const Store& store) const { return structure_ == store.structure_version() && known({}) != nullptr; }
   /// What `choice` names, as it is now. Errors: a pattern that is none, is too much work, or reaches no property.
   Result<std::shared_ptr<const Preset>> take(const Store& store, std::string name, const PresetChoice& choice);
   /// From now on it is another store.
-  void forget_store() { plans_.clear(); }
+  void forget_store();
 
   /// Every property as a scene's run has left it; of the scene's own parameters their defaults.
   static std::shared_ptr<const Preset> take_script(const Store& store);
@@ -31,7 +46,6 @@ class PresetTaker {
   };
   struct Plan {
     PresetChoice choice;
-    std::uint64_t structure = 0;
     std::shared_ptr<const PresetShape> shape;
     std::vector<Piece> pieces;
   };
@@ -39,7 +53,13 @@ class PresetTaker {
 
   static std::shared_ptr<const Preset> copy(const Store& store, const Plan& plan, std::string name);
 
-  std::vector<Plan> plans_;
+  const Plan* known(const PresetChoice& choice) const;
+  const Plan& keep(Plan plan);
+
+  std::vector<Plan> plans_;          // those that hold
+  std::unique_ptr<Planning> ahead_;  // of every property, on its way
+  std::uint64_t structure_ = 0;      // the plans'
+  int quiet_ = 0;
 };
 
 }  // namespace limber

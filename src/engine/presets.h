@@ -56,6 +56,8 @@ class Presets {
   void stop() { morphs_.clear(); }
   /// Morphs go on to where they are at that time.
   void advance(World& world);
+  /// Makes ready for a store; once a tick.
+  void prepare(const World& world) { taker_.prepare(world.store()); }
   /// A recall that the hand remembers, after a reset.
   void repeat(World& world, const Blend& blend);
 

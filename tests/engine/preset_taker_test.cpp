@@ -1,0 +1,94 @@
+// Presets are made ready in small pieces while nothing comes or goes, and are the same as those that are not.
+#include "engine/preset_taker.h"
+
+#include <algorithm>
+
+#include "engine/rig.h"
+
+namespace limber::engine_test {
+namespace {
+
+std::size_t things_of(const Store& store) {
+  std::size_t count = 0;
+  store.walk(store.root(), [&](NodeId) { count++; });
+  return count;
+}
+
+// calls until it is ready
+std::size_t prepare(PresetTaker& taker, const Store& store) {
+  std::size_t calls = 0;
+  for (; !taker.ready(store) && calls < 100000; calls++) taker.prepare(store);
+  return calls;
+}
+
+void expect_same(const Preset& a, const Preset& b) {
+  EXPECT_EQ(a.values, b.values);
+  EXPECT_TRUE(*a.shape == *b.shape);
+}
+
+struct PresetTakerTest : testing::Test {
+  Rig rig;
+  void add_bodies(int count) {
+    Shape& shape = **rig.world.add_shape(fmt::format("shape{}", made), ball());
+    for (int i = 0; i < count; i++) {
+      Body& body = **rig.world.add_body(fmt::format("more{}", made++));
+      ASSERT_TRUE(body.add_part("tip", shape, i % 2, Pose{}).ok());
+    }
+    rig.world.settle();
+  }
+  std::shared_ptr<const Preset> fresh(const PresetChoice& choice = {}) const {
+    return *PresetTaker().take(rig.store, "all", choice);
+  }
+  int made = 0;
+};
+
+TEST_F(PresetTakerTest, TellsOfThingsInTheOrderOfTheTree) {
+  std::vector<std::string> tree, preset;
+  rig.store.walk(rig.store.root(), [&](NodeId id) {
+    const auto& rows = rig.store.table(id).rows();
+    if (std::ranges::any_of(rows, [](const Row& row) { return row.kind == RowKind::property && row.stored(); }))
+      tree.push_back(rig.store.path(id));
+  });
+  const auto taken = fresh();
+  for (std::uint32_t i = 0; i < taken->shape->things().size(); i++) {
+    if (taken->shape->rows(taken->shape->things()[i]) != nullptr) preset.push_back(taken->shape->path(i));
+  }
+  EXPECT_GT(tree.size(), 15u);
+  EXPECT_EQ(preset, tree);
+}
+
+TEST_F(PresetTakerTest, IsReadyAfterSoManySlices) {
+  PresetTaker taker;
+  EXPECT_EQ(prepare(taker, rig.store), PresetTaker::kQuiet + 1u) << "less than a slice";
+  add_bodies(700);
+  const std::size_t slices = things_of(rig.store) / PresetTaker::kSlice + 1;
+  EXPECT_GT(slices, 4u);
+  EXPECT_FALSE(taker.ready(rig.store)) << "something came";
+  EXPECT_EQ(prepare(taker, rig.store), PresetTaker::kQuiet + slices);
+  expect_same(**taker.take(rig.store, "all", {}), *fresh());
+}
+
+TEST_F(PresetTakerTest, WhatComesOnTheWayIsInIt) {
+  PresetTaker taker;
+  add_bodies(700);
+  for (int i = 0; i < PresetTaker::kQuiet + 3; i++) taker.prepare(rig.store);
+  add_bodies(3);
+  taker.prepare(rig.store);
+  expect_same(**taker.take(rig.store, "all", {}), *fresh());
+  rig.world.remove_body(*rig.world.find_body("more1"));
+  expect_same(**taker.take(rig.store, "all", {}), *fresh());
+}
+
+TEST_F(PresetTakerTest, HalfReadyIsFinishedAtOnce) {
+  PresetTaker taker;
+  add_bodies(700);
+  for (int i = 0; i < PresetTaker::kQuiet + 2; i++) taker.prepare(rig.store);
+  EXPECT_FALSE(taker.ready(rig.store));
+  const PresetChoice part{{"/physics/body/more*//*"}, {}, true, false};
+  expect_same(**taker.take(rig.store, "some", part), *fresh(part));
+  expect_same(**taker.take(rig.store, "all", {}), *fresh());
+  EXPECT_TRUE(taker.ready(rig.store));
+}
+
+}  // namespace
+}  // namespace limber::engine_test
