@@ -3,15 +3,13 @@
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
-#include <cstdlib>
-#include <memory>
 #include <string_view>
 
 #include <nlohmann/json.hpp>
 
-#include "base/log.h"
 #include "engine/everything.h"
 #include "engine/image_of.h"
+#include "fuzz/target.h"
 #include "osc/encode.h"
 #include "osc/receiver.h"
 #include "osc/validate.h"
@@ -23,11 +21,6 @@ using namespace limber;
 
 constexpr std::uint64_t kRenewEvery = 2048;  // inputs that a world sees
 
-// a fault that no sanitizer sees
-void require(bool condition) {
-  if (!condition) std::abort();
-}
-
 // what a client is sent; each frame is looked at
 struct Line : ClientLine {
   std::size_t bytes = 0;
@@ -35,8 +28,8 @@ struct Line : ClientLine {
 
   void send(bool text, std::string frame) override {
     bytes += frame.size();
-    if (text) require(nlohmann::json::accept(frame));
-    if (!text) require(packet_fault(frame.data(), frame.size()) == nullptr);
+    if (text) must(nlohmann::json::accept(frame));
+    if (!text) must(packet_fault(frame.data(), frame.size()) == nullptr);
     if (!text && frame.starts_with("/physics/sim/seed")) values++;
   }
   std::size_t waiting() const override { return bytes; }
@@ -79,7 +72,7 @@ class Desk {
     line_.bytes = other_line_.bytes = 0;
     const std::uint64_t before = other_line_.values;
     hall_.bell();
-    require(other_line_.values == before + 1);
+    must(other_line_.values == before + 1);
   }
 
   QueryDoors doors() {
@@ -113,12 +106,5 @@ class Desk {
 
 // NOLINTNEXTLINE(readability-identifier-naming): libFuzzer's name
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* bytes, std::size_t size) {
-  static std::unique_ptr<Desk>& desk = *new std::unique_ptr<Desk>;  // lives as long as the process
-  if (desk == nullptr) {
-    log_to_stderr(false);
-    desk = std::make_unique<Desk>();
-  }
-  desk->input({reinterpret_cast<const char*>(bytes), size});
-  if (desk->worn()) desk.reset();
-  return 0;
+  return live_input<Desk>(bytes, size);
 }
