@@ -10,6 +10,7 @@ tsan_takes="base engine osc console query"
 # long predictions: the release build's runs test them; shorter tests take the same code through the address sanitizer
 asan_leaves_out_tests=PointGrid.EachPairOnce:JointRows.StopCfm*:Plots.AreTodays:Flock.Without*
 asan_leaves_out_tests+=:Scenes.ABehaviorOfAnArm*:Scenes.AGustBends*
+asan_leaves_out_tests+=:Twins.MoveAlike/al*:Twins.MoveAlike/sep*:Twins.MoveAlike/r*:Twins.MoveAlike/vol*
 
 pass() { passed=$((passed + ${1:-1})); }
 # fail TEXT LOG: one failed check, with the end of its log
