@@ -10,16 +10,18 @@ return behavior {
     { "rand_interval", 1000, min = 0, max = 1e9, unit = "ms", doc = "Simulated time from one random draw to the next." },
     { "app_interval", 1, min = 0, max = 1e9, unit = "ms", doc = "Simulated time from one application to the next; shorter than a tick: every tick." },
   },
-  start = function(self) self.state.forces = {} end,
+  start = function(self) self.state.x, self.state.y, self.state.z = {}, {}, {} end,
   step = function(self)
-    local forces = self.state.forces
+    -- three lists of numbers are read faster than one of vectors
+    local x, y, z = self.state.x, self.state.y, self.state.z
     if self:due("rand_interval") then
       for i in ipairs(self.parts) do
         local dir = self.rng:uniform(self.min_dir, self.max_dir)
-        forces[i] = dir:normalized() * self.rng:uniform(self.min_amp, self.max_amp)
+        local force = dir:normalized() * self.rng:uniform(self.min_amp, self.max_amp)
+        x[i], y[i], z[i] = force.x, force.y, force.z
       end
     end
     if not self:due("app_interval") then return end
-    for i, part in ipairs(self.parts) do part:apply_force(forces[i]) end
+    for i, part in ipairs(self.parts) do part:apply_force(vec3(x[i], y[i], z[i])) end
   end,
 }

@@ -11,14 +11,18 @@ return behavior {
     { "rand_interval", 1000, min = 0, max = 1e9, unit = "ms", doc = "Simulated time from one random draw to the next." },
     { "app_interval", 1, min = 0, max = 1e9, unit = "ms", doc = "Simulated time from one application to the next; shorter than a tick: every tick." },
   },
-  start = function(self) self.state.targets = {} end,
+  start = function(self) self.state.x, self.state.y, self.state.z = {}, {}, {} end,
   step = function(self)
-    local targets = self.state.targets
+    -- three lists of numbers are read faster than one of vectors
+    local x, y, z = self.state.x, self.state.y, self.state.z
     if self:due("rand_interval") then
-      for i in ipairs(self.motors) do targets[i] = self.rng:uniform(self.min_target, self.max_target) end
+      for i in ipairs(self.motors) do
+        local target = self.rng:uniform(self.min_target, self.max_target)
+        x[i], y[i], z[i] = target.x, target.y, target.z
+      end
     end
     if not self:due("app_interval") then return end
     local speed = self.speed
-    for i, motor in ipairs(self.motors) do turn(motor, targets[i], speed) end
+    for i, motor in ipairs(self.motors) do turn(motor, vec3(x[i], y[i], z[i]), speed) end
   end,
 }

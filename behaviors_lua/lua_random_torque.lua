@@ -9,14 +9,18 @@ return behavior {
     { "rand_interval", 1000, min = 0, max = 1e9, unit = "ms", doc = "Simulated time from one random draw to the next." },
     { "app_interval", 1, min = 0, max = 1e9, unit = "ms", doc = "Simulated time from one application to the next; shorter than a tick: every tick." },
   },
-  start = function(self) self.state.torques = {} end,
+  start = function(self) self.state.x, self.state.y, self.state.z = {}, {}, {} end,
   step = function(self)
-    local torques = self.state.torques
+    -- three lists of numbers are read faster than one of vectors
+    local x, y, z = self.state.x, self.state.y, self.state.z
     if self:due("rand_interval") then
-      for i in ipairs(self.parts) do torques[i] = self.rng:uniform(self.min_torque, self.max_torque) end
+      for i in ipairs(self.parts) do
+        local torque = self.rng:uniform(self.min_torque, self.max_torque)
+        x[i], y[i], z[i] = torque.x, torque.y, torque.z
+      end
     end
     if not self:due("app_interval") then return end
     local scale = self.scale
-    for i, part in ipairs(self.parts) do part:apply_torque(torques[i] * scale) end
+    for i, part in ipairs(self.parts) do part:apply_torque(vec3(x[i], y[i], z[i]) * scale) end
   end,
 }

@@ -637,10 +637,17 @@ function visuals:shape(key) end
 ---@field target vec3like # m, -1000000 .. 1000000. What it looks at, world; the eye stays.
 local camera_ = {}
 
----Looks from one point at another, upright.
+---Looks from one point at another, upright: at once, or (in callbacks) in so many seconds of simulation time, slow at
+---both ends. A hand on the camera ends the way there.
 ---@param eye vec3like
 ---@param target vec3like
-function camera_:look_at(eye, target) end
+---@param seconds? number # above 0.
+function camera_:look_at(eye, target, seconds) end
+
+---Looks at a part, or at the root of a body, and goes with it (in callbacks); distance and direction stay, and a hand may
+---change them. nil: goes with nothing.
+---@param thing body|part|nil
+function camera_:follow(thing) end
 
 -- A scene's own parameters and state, and OSC.
 

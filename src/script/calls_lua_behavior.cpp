@@ -127,11 +127,15 @@ const LimberMeans* neighbor_means(void* c, std::int32_t slot, std::int32_t gener
   return reinterpret_cast<const LimberMeans*>(&means);
 }
 
+std::int32_t behavior_group(void* c, std::int32_t slot, std::int32_t generation) {
+  const Behavior* behavior = behavior_of(context_of(c), id_of(slot, generation));
+  return behavior == nullptr ? kGone : static_cast<std::int32_t>(behavior->group()->id().slot);
+}
+
 std::int32_t neighbor_part(void* c, std::int32_t slot, std::int32_t generation, std::int32_t index) {
   ScriptContext& context = context_of(c);
   const Behavior* behavior = behavior_of(context, id_of(slot, generation));
   if (behavior == nullptr) return kGone;
-  if (index == -2) return static_cast<std::int32_t>(behavior->group()->id().slot);
   return told(context, behavior->group()->neighbor_parts(), index);
 }
 

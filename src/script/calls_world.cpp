@@ -145,6 +145,15 @@ std::int32_t contact(void* c, std::int32_t index) {
   return kOk;
 }
 
+void camera_glide(void* c, double eye_x, double eye_y, double eye_z, double target_x, double target_y, double target_z,
+                  double seconds) {
+  context_of(c).world->camera_moves().glide({eye_x, eye_y, eye_z}, {target_x, target_y, target_z}, seconds);
+}
+
+void camera_follow(void* c, std::int32_t slot, std::int32_t generation) {
+  context_of(c).world->camera_moves().follow(slot < 0 ? NodeId{} : id_of(slot, generation));
+}
+
 void ask_reset(void* c) { context_of(c).reset_wanted = true; }
 
 void param_begin(void* c) { context_of(c).param_rows.clear(); }

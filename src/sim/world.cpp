@@ -78,6 +78,7 @@ void World::clear() {
     if (row.kind == RowKind::property) (void)store_.set(id_, row, {row.initial.data(), row.width});
   }
   visuals_->clear();
+  camera_moves_.stop();
 }
 
 void World::restart_time(std::uint64_t tick, double time) {
@@ -210,6 +211,7 @@ void World::step() {
     if (!body->broken_) body->take_good_pose();
   }
   if (std::exchange(healed_, false)) settle_healed();
+  camera_moves_.step();
   times_ = {start - begin, before - start, after - before, clock_seconds() - after};
 }
 

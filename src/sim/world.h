@@ -12,6 +12,7 @@
 #include "params/store.h"
 #include "sim/behavior_list.h"
 #include "sim/body.h"
+#include "sim/camera_moves.h"
 #include "sim/contacts.h"
 #include "sim/island_world.h"
 #include "sim/part_solids.h"
@@ -71,6 +72,7 @@ class World {
   void order_shapes(const std::vector<Shape*>& first);
   Visuals& visuals() { return *visuals_; }
   const Visuals& visuals() const { return *visuals_; }
+  CameraMoves& camera_moves() { return camera_moves_; }
   BehaviorList& behaviors() { return *behaviors_; }
   const BehaviorList& behaviors() const { return *behaviors_; }
 
@@ -132,6 +134,7 @@ class World {
   std::vector<std::unique_ptr<Body>> bodies_;
   std::unique_ptr<BehaviorList> behaviors_;
   std::unique_ptr<Visuals> visuals_;
+  CameraMoves camera_moves_{*this};
   struct ModelGeometry {
     std::shared_ptr<const BodyModel> model;  // keeps the key's address from being used again
     std::vector<std::shared_ptr<const Geometry>> links;

@@ -108,6 +108,17 @@ void WorldUndo::keep(Body& body) {
       this, bodies_.size() - 1);
 }
 
+void WorldUndo::keep(CameraMoves& moves) {
+  if (!active_ || !first_time(moves.kept_in_)) return;
+  moves_ = moves.state_;
+  note(
+      [](void* undo, std::size_t) {
+        const auto& self = *static_cast<WorldUndo*>(undo);
+        self.world_.camera_moves_.state_ = self.moves_;
+      },
+      this);
+}
+
 void WorldUndo::keep(Shape& shape) {
   note([](void* owner, std::size_t count) { static_cast<Shape*>(owner)->keep_children(count); }, &shape,
        shape.child_count());

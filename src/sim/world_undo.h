@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "base/vec.h"
+#include "sim/camera_moves.h"
 
 namespace limber {
 
@@ -36,6 +37,8 @@ class WorldUndo {
   /// The forces that wait in a part, and what a body knows beside its rows: before they are changed.
   void keep(Part& part);
   void keep(Body& body);
+  /// What moves the camera: before it is changed.
+  void keep(CameraMoves& moves);
   /// How many children a compound has: before it gets one.
   void keep(Shape& shape);
   /// Bullet's pose and velocity of a part: before its effects run ahead of the next step.
@@ -72,6 +75,7 @@ class WorldUndo {
   std::vector<Entry> entries_;
   std::vector<Forces> forces_;
   std::vector<BodyState> bodies_;
+  CameraMoves::State moves_;
   std::vector<Motion> motions_;
   std::vector<Hidden> hidden_;
 };

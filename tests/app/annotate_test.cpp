@@ -6,11 +6,6 @@
 namespace limber::app_test {
 namespace {
 
-std::string content(const std::filesystem::path& file) {
-  std::ifstream in(file, std::ios::binary);
-  return {std::istreambuf_iterator<char>(in), {}};
-}
-
 TEST(Annotate, PrintsOrWritesTheSame) {
   const Folder folder;
   const Ran printed = run({"annotate"});

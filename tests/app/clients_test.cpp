@@ -8,7 +8,7 @@ namespace limber::app_test {
 namespace {
 
 // an arm of one hanging joint that tells what it was sent
-constexpr const char* kScene = R"(
+constexpr const char* kHangingArm = R"(
 local shape = sim:add_sphere_shape("ball", 0.1)
 local arm = sim:add_body("arm")
 arm:add_part("base", shape, { mass = 0, position = vec3(1, 2, 3) })
@@ -32,13 +32,14 @@ std::string free_port() {
 }
 
 // the program with ports of its own; `in` is where it listens
-struct Player {
+struct ArmPlayer {
   Folder folder;
   std::string out = free_port();
-  Running running{limber({folder.file("s.lua", kScene), "--osc-in", "127.0.0.1:0", "--osc-out", "127.0.0.1:" + out})};
+  Running running{
+      limber({folder.file("s.lua", kHangingArm), "--osc-in", "127.0.0.1:0", "--osc-out", "127.0.0.1:" + out})};
   std::string in;
 
-  Player() {
+  ArmPlayer() {
     EXPECT_TRUE(running.wait_for("playing headless")) << running.err();
     const std::string mark = "OSC in 127.0.0.1:";
     const std::size_t at = running.err().find(mark) + mark.size();
@@ -47,7 +48,7 @@ struct Player {
 };
 
 TEST(Clients, OscsendPlays) {
-  Player player;
+  ArmPlayer player;
   const std::string url = "osc.udp://127.0.0.1:" + player.in;
   EXPECT_EQ(Running({"oscsend", url, "/physics/part/friction", "ssf", "arm", "tip", "0.25"}).finish().code, 0);
   EXPECT_TRUE(player.running.wait_for("friction\t0.25\n", true)) << player.running.out();
@@ -56,7 +57,7 @@ TEST(Clients, OscsendPlays) {
 }
 
 TEST(Clients, OscdumpReadsTheStreams) {
-  Player player;
+  ArmPlayer player;
   Running dump({"stdbuf", "-oL", "oscdump", "-L", player.out});
   // the joint's point is the base's centre, whatever moves
   EXPECT_TRUE(dump.wait_for("/physics/joint/pos sfff \"arm\" 1.000000 2.000000 3.000000", true)) << dump.out();
@@ -65,7 +66,7 @@ TEST(Clients, OscdumpReadsTheStreams) {
 }
 
 TEST(Clients, PureDataPlaysReadsAndIsAnswered) {
-  Player player;
+  ArmPlayer player;
   const std::string patch = std::string(LIMBER_SOURCE_DIR) + "/tests/app/play.pd";
   Running pd({"pd", "-nogui", "-nosound", "-noprefs", "-stderr", "-open", patch, "-send",
               "ports " + player.in + " " + player.out});

@@ -10,11 +10,6 @@ namespace {
 
 using Lines = std::vector<std::string>;
 
-std::string content(const std::string& file) {
-  std::ifstream in(file, std::ios::binary);
-  return {std::istreambuf_iterator<char>(in), {}};
-}
-
 TEST(ConsoleHistory, KeepsLinesOverConsoles) {
   const PrivateFolder folder;
   const std::string file = folder / "state/limber/console_history";

@@ -93,7 +93,7 @@ class Typist {
   std::string in_;
 };
 
-constexpr const char* kScene = R"(
+constexpr const char* kTypedScene = R"(
 sim:add_body("arm"):add_part("tip", sim:add_sphere_shape("ball", 1), { mass = 0 })
 apple = 3
 osc:on("/never", print)
@@ -101,7 +101,7 @@ function later(text) sim:after(0.05, function() print(text) end) end
 )";
 
 TEST(Terminal, EvaluatesAndKeepsAHistory) {
-  Playing show(kScene);
+  Playing show(kTypedScene);
   {
     Typist typist(show);
     EXPECT_NE(typist.prompted().find("plays " + show.file()), std::string::npos);
@@ -126,7 +126,7 @@ TEST(Terminal, EvaluatesAndKeepsAHistory) {
 }
 
 TEST(Terminal, SeveralLinesMakeAChunkAndCtrlCGivesItUp) {
-  Playing show(kScene);
+  Playing show(kTypedScene);
   Typist typist(show);
   typist.prompted();
   EXPECT_EQ(typist.line("for i = 1, 2 do", ".. "), "     ");
@@ -146,7 +146,7 @@ TEST(Terminal, SeveralLinesMakeAChunkAndCtrlCGivesItUp) {
 }
 
 TEST(Terminal, TabCompletes) {
-  Playing show(kScene);
+  Playing show(kTypedScene);
   Typist typist(show);
   typist.prompted();
   typist.type("sim:body(\"a\t");
@@ -165,7 +165,7 @@ TEST(Terminal, TabCompletes) {
 }
 
 TEST(Terminal, WhatTheShowSaysComesAboveTheLineThatIsTyped) {
-  Playing show(kScene);
+  Playing show(kTypedScene);
   Typist typist(show);
   typist.prompted();
   EXPECT_EQ(typist.line("later('hello')"), "");
@@ -176,7 +176,7 @@ TEST(Terminal, WhatTheShowSaysComesAboveTheLineThatIsTyped) {
 }
 
 TEST(Terminal, TheEndOfTheShowIsSaid) {
-  Playing show(kScene);
+  Playing show(kTypedScene);
   Typist typist(show);
   typist.prompted();
   show.running().signal(SIGINT);
@@ -185,7 +185,7 @@ TEST(Terminal, TheEndOfTheShowIsSaid) {
 }
 
 TEST(Terminal, AnAnswerThatNeverComesCanBeGivenUp) {
-  Playing show(kScene);
+  Playing show(kTypedScene);
   Typist typist(show);
   typist.prompted();
   // a program that does not go on

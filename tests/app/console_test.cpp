@@ -4,10 +4,10 @@
 namespace limber::app_test {
 namespace {
 
-constexpr const char* kScene = "apple = 3\nsim:on_start(function() print('played') end)\n";
+constexpr const char* kApple = "apple = 3\nsim:on_start(function() print('played') end)\n";
 
 TEST(Console, OneExpression) {
-  Playing show(kScene);
+  Playing show(kApple);
   Ran ran = show.console({"-e", "apple + 1, 'x'"});
   EXPECT_EQ(ran.code, 0);
   EXPECT_EQ(ran.out, "4\tx\n");
@@ -30,7 +30,7 @@ TEST(Console, OneExpression) {
 }
 
 TEST(Console, LinesOfAPipe) {
-  Playing show(kScene);
+  Playing show(kApple);
   const Ran fine =
       show.pipe("x = 1\n\nfunction twice(n)\n\n  return 2 * n\nend\r\ntwice(x)\nprint('by hand')\ntwice(4)");
   EXPECT_EQ(fine.out, "2\nby hand\n8\n");
@@ -48,7 +48,7 @@ TEST(Console, LinesOfAPipe) {
 }
 
 TEST(Console, WithSeveralItSaysHowToChoose) {
-  Playing first(kScene);
+  Playing first(kApple);
   Running second(first.words({"play", first.file()}));
   ASSERT_TRUE(second.wait_for("playing headless")) << second.err();
   const Ran ran = first.console({"-e", "1"});
@@ -64,7 +64,7 @@ TEST(Console, WithSeveralItSaysHowToChoose) {
 }
 
 TEST(Console, WithoutAShowThereIsNobodyToTalkTo) {
-  Playing show(kScene);
+  Playing show(kApple);
   const std::string socket = show.runtime() / ("limber-" + show.pid() + ".sock");
   EXPECT_TRUE(std::filesystem::exists(socket));
   show.running().signal(SIGINT);
@@ -77,7 +77,7 @@ TEST(Console, WithoutAShowThereIsNobodyToTalkTo) {
 }
 
 TEST(Console, AKilledShowsSocketIsRemovedByTheNext) {
-  Playing show(kScene);
+  Playing show(kApple);
   const std::string socket = show.runtime() / ("limber-" + show.pid() + ".sock");
   show.running().signal(SIGKILL);
   show.running().finish();
@@ -93,7 +93,7 @@ TEST(Console, AShowWithoutAFolderForItPlaysOn) {
   std::filesystem::permissions(runtime.path(), std::filesystem::perms::all);
   std::ofstream(runtime / ("limber-" + std::to_string(geteuid()))) << "no folder";
   const Folder folder;
-  Running running(limber({"play", folder.file("s.lua", kScene), "--osc-in", "off", "--osc-out", "off"},
+  Running running(limber({"play", folder.file("s.lua", kApple), "--osc-in", "off", "--osc-out", "off"},
                          {"env", "XDG_RUNTIME_DIR=" + runtime.path(), "TMPDIR=" + runtime.path()}));
   EXPECT_TRUE(running.wait_for("playing headless"));
   EXPECT_NE(running.err().find("limber: warning: there is no console: the folder " + runtime.path()), std::string::npos)
@@ -102,7 +102,7 @@ TEST(Console, AShowWithoutAFolderForItPlaysOn) {
 
 TEST(Console, BatchesHaveNone) {
   const Folder folder;
-  const Ran ran = run({folder.file("s.lua", kScene), "--fast", "--ticks", "2"});
+  const Ran ran = run({folder.file("s.lua", kApple), "--fast", "--ticks", "2"});
   EXPECT_EQ(ran.err.find("console"), std::string::npos) << ran.err;
 }
 

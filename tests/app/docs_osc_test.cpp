@@ -15,7 +15,7 @@
 namespace limber::app_test {
 namespace {
 
-constexpr const char* kScene = R"(
+constexpr const char* kPageScene = R"(
 params {
   { "speed", 0.12, min = 0, max = 1 }, { "depth", 0.6, min = 0, max = 1.2 }, { "lag", 0.6, min = 0, max = 3.14 },
 }
@@ -38,7 +38,7 @@ class Desk {
  public:
   Desk() {
     EngineOptions options;
-    options.scene = folder_.file("scene.lua", kScene);
+    options.scene = folder_.file("scene.lua", kPageScene);
     options.scene_options.data_dir = LIMBER_SOURCE_DIR;
     options.fast = true;
     engine_ = std::make_unique<Engine>(link_, options);
@@ -69,7 +69,7 @@ class Desk {
 };
 
 // words as a shell parts them; two blanks end a line of the page, what follows explains
-std::vector<std::string> words_of(const std::string& line) {
+std::vector<std::string> shell_words(const std::string& line) {
   std::vector<std::string> words;
   std::string word;
   char quote = 0;
@@ -100,7 +100,7 @@ TEST(DocsOsc, EveryExampleOfThePagesIsTaken) {
     std::size_t sent = 0;
     for (std::string line; std::getline(page, line);) {
       if (!line.starts_with("    ")) continue;
-      std::vector<std::string> words = words_of(line.substr(4));
+      std::vector<std::string> words = shell_words(line.substr(4));
       if (words.size() > 2 && words[0] == "limber" && words[1] == "send") words.erase(words.begin(), words.begin() + 2);
       if (words.empty() || !words[0].starts_with("/")) continue;
       SCOPED_TRACE(line);
@@ -154,7 +154,7 @@ TEST(DocsOsc, SuperCollidersMessages) {
     std::string list = (*it)[1];
     std::ranges::replace(list, ',', ' ');
     list = std::regex_replace(list, std::regex(" +"), " ");
-    const Message m = message_of(words_of(list));
+    const Message m = message_of(shell_words(list));
     // the network answers these by itself
     if (m.address == "/subscribe") continue;
     desk.expect_taken(m);
@@ -164,9 +164,9 @@ TEST(DocsOsc, SuperCollidersMessages) {
 }
 
 // a program with that scene, and where it listens and streams to
-struct Player {
-  explicit Player(const std::string& out = "off")
-      : running(limber({folder.file("scripts/scene.lua", kScene), "--osc-in", "127.0.0.1:0", "--osc-out", out,
+struct PagePlayer {
+  explicit PagePlayer(const std::string& out = "off")
+      : running(limber({folder.file("scripts/scene.lua", kPageScene), "--osc-in", "127.0.0.1:0", "--osc-out", out,
                         "--query", "off"})) {
     EXPECT_TRUE(running.wait_for("playing headless")) << running.err();
     const std::string mark = "OSC in 127.0.0.1:";
@@ -179,7 +179,7 @@ struct Player {
 };
 
 TEST(DocsOsc, ThePythonProgramPlaysAndReads) {
-  Player player;
+  PagePlayer player;
   const std::string file = LIMBER_SOURCE_DIR "/docs/examples/limber.py";
   const Ran ran = Running({"python3", "-B", file, "--port", player.in, "--seconds", "0.5"}).finish();
   EXPECT_EQ(ran.code, 0) << ran.err;
@@ -192,7 +192,7 @@ TEST(DocsOsc, ThePythonProgramPlaysAndReads) {
 }
 
 TEST(DocsOsc, ThePdPatchPlaysAndIsAnswered) {
-  Player player;
+  PagePlayer player;
   const std::string patch = LIMBER_SOURCE_DIR "/docs/examples/limber.pd";
   Running pd({"pd", "-nogui", "-nosound", "-noprefs", "-stderr", "-open", patch, "-send",
               fmt::format("ports {} {}", player.in, 9), "-send", "gravity -3", "-send", "target 0.5", "-send", "wind 4",

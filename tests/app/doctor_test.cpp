@@ -9,9 +9,9 @@ namespace limber::app_test {
 namespace {
 
 // takes the default port unless somebody on this machine has it already; either way it is taken
-class TakenPort {
+class TakenDefaultPort {
  public:
-  explicit TakenPort(int kind) : fd_(socket(AF_INET, kind | SOCK_CLOEXEC, 0)) {
+  explicit TakenDefaultPort(int kind) : fd_(socket(AF_INET, kind | SOCK_CLOEXEC, 0)) {
     sockaddr_in at{};
     at.sin_family = AF_INET;
     at.sin_port = htons(9003);
@@ -19,9 +19,9 @@ class TakenPort {
     (void)bind(fd_, reinterpret_cast<const sockaddr*>(&at), sizeof at);
     if (kind == SOCK_STREAM) (void)listen(fd_, 1);
   }
-  ~TakenPort() { close(fd_); }
-  TakenPort(const TakenPort&) = delete;
-  TakenPort& operator=(const TakenPort&) = delete;
+  ~TakenDefaultPort() { close(fd_); }
+  TakenDefaultPort(const TakenDefaultPort&) = delete;
+  TakenDefaultPort& operator=(const TakenDefaultPort&) = delete;
 
  private:
   int fd_;
@@ -39,7 +39,7 @@ TEST(Doctor, SaysWhatIsThere) {
 
 TEST(Doctor, ATakenPortIsTheMachinesFault) {
   for (const auto& [kind, cure] : {std::pair(SOCK_DGRAM, "--osc-in"), std::pair(SOCK_STREAM, "--query")}) {
-    const TakenPort taken(kind);
+    const TakenDefaultPort taken(kind);
     const Ran ran = run({"doctor"});
     EXPECT_EQ(ran.code, 3);
     EXPECT_NE(ran.out.find("no   ports"), std::string::npos) << ran.out;

@@ -99,7 +99,7 @@ void write_inputs(const Folder& folder) {
 }
 
 // arguments parted by blanks, '…' keeping some together
-std::vector<std::string> words_of(const std::string& input) {
+std::vector<std::string> quoted_words(const std::string& input) {
   std::vector<std::string> words;
   bool inside = false;
   bool open = false;
@@ -123,12 +123,12 @@ Ran run_input(const std::string& input) {
   // "in FOLDER ARGUMENTS" is called there
   if (input.starts_with("in ")) {
     const std::size_t blank = input.find(' ', 3);
-    return run(words_of(input.substr(blank + 1)), input.substr(3, blank - 3));
+    return run(quoted_words(input.substr(blank + 1)), input.substr(3, blank - 3));
   }
   // "^C when TEXT: ARGUMENTS" is somebody's Ctrl+C, twice, once that text was said
-  if (!input.starts_with("^C when ")) return run(words_of(input));
+  if (!input.starts_with("^C when ")) return run(quoted_words(input));
   const std::size_t colon = input.find(": ");
-  Running running(limber(words_of(input.substr(colon + 2))));
+  Running running(limber(quoted_words(input.substr(colon + 2))));
   running.wait_for(input.substr(8, colon - 8));
   running.signal(SIGINT);
   if (running.wait_for("\nlimber: ended ")) return running.finish();

@@ -37,7 +37,7 @@ double heap() {
 }
 
 // the whole program but its window, ticked by hand
-struct Stage {
+struct FloodedStage {
   engine_test::SceneFile file{kFloodScene};
   EngineLink link;
   Engine engine{link, engine_test::fast_options(file.path())};
@@ -46,13 +46,13 @@ struct Stage {
   Endpoint end;
   int ticks = 0;
 
-  Stage() {
+  FloodedStage() {
     EXPECT_TRUE(engine.start().ok());
     EXPECT_TRUE(network.start().ok());
     EXPECT_TRUE(query.start({"127.0.0.1", 0}).ok());
     end = network.bound().at(0);
   }
-  ~Stage() {
+  ~FloodedStage() {
     query.stop();
     network.stop();
   }
@@ -114,7 +114,7 @@ std::vector<WebClient> deaf_listeners(std::uint16_t port) {
 // one who plays and asks amid the flood: each value is set, each question answered, in order
 class Asker {
  public:
-  explicit Asker(Stage& stage) : stage_(stage) {}
+  explicit Asker(FloodedStage& stage) : stage_(stage) {}
 
   std::uint64_t turn() {
     value_++;
@@ -130,13 +130,13 @@ class Asker {
   }
 
  private:
-  Stage& stage_;
+  FloodedStage& stage_;
   Client client_;
   float value_ = 0;
 };
 
 // all that a flood of datagrams was, when all of it has been carried out
-FloodSum sum_of(Stage& stage, std::uint64_t sent, std::uint64_t others) {
+FloodSum sum_of(FloodedStage& stage, std::uint64_t sent, std::uint64_t others) {
   const Client client;
   client.send(stage.end, Bytes().text("/count").str());
   const std::optional<Message> count = stage.answer(client, "/count");
@@ -158,7 +158,7 @@ FloodSum sum_of(Stage& stage, std::uint64_t sent, std::uint64_t others) {
 
 TEST(Flood, TwentyThousandASecondOfEveryKind) {
   log_to_stderr(false);
-  Stage stage;
+  FloodedStage stage;
   std::uint64_t others = dead_subscribers(stage.end);
   const std::vector<WebClient> deaf = deaf_listeners(stage.query.port());
   WebClient listener(stage.query.port());

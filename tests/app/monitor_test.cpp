@@ -4,7 +4,7 @@
 namespace limber::app_test {
 namespace {
 
-constexpr const char* kScene = R"(
+constexpr const char* kWatchedScene = R"(
 params { { "wind", 2, min = 0, max = 10 } }
 local ball = sim:add_sphere_shape("ball", 0.1)
 local arm = sim:add_body("arm")
@@ -15,11 +15,11 @@ osc:on("/hello", function(name) osc:reply("/hello/back", name, 2) end)
 )";
 
 // with an OSC port that the system chooses, and the consoles' folder of its own
-struct Stage {
-  explicit Stage(const std::string& out = "off")
-      : running(limber(
-            {folder.file("scripts/scene.lua", kScene), "--osc-in", "127.0.0.1:0", "--osc-out", out, "--query", "off"},
-            environment())) {
+struct WatchedStage {
+  explicit WatchedStage(const std::string& out = "off")
+      : running(limber({folder.file("scripts/scene.lua", kWatchedScene), "--osc-in", "127.0.0.1:0", "--osc-out", out,
+                        "--query", "off"},
+                       environment())) {
     EXPECT_TRUE(running.wait_for("playing headless")) << running.err();
     const std::string mark = "OSC in ";
     const std::size_t at = running.err().find(mark) + mark.size();
@@ -44,7 +44,7 @@ struct Stage {
 };
 
 TEST(Send, PrintsWhatIsAnswered) {
-  const Stage stage;
+  const WatchedStage stage;
   const Ran set = stage.send({"/scene/wind", "4.5"});
   EXPECT_EQ(set.code, 0) << set.err;
   EXPECT_EQ(set.out, "");
@@ -57,7 +57,7 @@ TEST(Send, PrintsWhatIsAnswered) {
 }
 
 TEST(Send, SaysWhatWasWrong) {
-  const Stage stage;
+  const WatchedStage stage;
   const Ran refused = stage.send({"/physics/part/mass", "arm", "tipp", "0.3"});
   EXPECT_EQ(refused.code, 1);
   EXPECT_NE(refused.err.find("did you mean 'tip'?"), std::string::npos) << refused.err;
@@ -74,7 +74,7 @@ TEST(Send, SaysWhatWasWrong) {
 }
 
 TEST(Monitor, PrintsWhatComesInAndGoesOut) {
-  const Stage stage;
+  const WatchedStage stage;
   Running monitor(stage.monitor({"--count", "4"}));
   ASSERT_TRUE(monitor.wait_for("watching what goes in"));
   EXPECT_EQ(stage.send({"/scene/wind", "4.5"}).code, 0);
@@ -87,7 +87,7 @@ TEST(Monitor, PrintsWhatComesInAndGoesOut) {
 }
 
 TEST(Monitor, FiltersByPatternAndWay) {
-  const Stage stage("127.0.0.1:9");
+  const WatchedStage stage("127.0.0.1:9");
   Running streams(stage.monitor({"/physics/joint/*", "--out", "--count", "3"}));
   const Ran ran = streams.finish();
   EXPECT_EQ(ran.code, 0);
@@ -101,7 +101,7 @@ TEST(Monitor, FiltersByPatternAndWay) {
 }
 
 TEST(Monitor, TellsChanges) {
-  const Stage stage;
+  const WatchedStage stage;
   Running monitor(stage.monitor({"--changes", "--count", "2"}));
   ASSERT_TRUE(monitor.wait_for("watching changes"));
   // the first look is what changes are compared with: until it was taken nothing is one
@@ -124,7 +124,7 @@ TEST(Monitor, SaysWhatIsWrong) {
   EXPECT_EQ(nobody.code, 1);
   EXPECT_NE(nobody.err.find("limber: monitor: no limber of yours is running; start one"), std::string::npos)
       << nobody.err;
-  const Stage stage;
+  const WatchedStage stage;
   const Ran wrong = Running(stage.monitor({"wind"})).finish();
   EXPECT_EQ(wrong.code, 1);
   EXPECT_NE(wrong.err.find("'wind' is no address"), std::string::npos) << wrong.err;

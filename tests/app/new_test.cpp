@@ -12,11 +12,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-std::string content(const fs::path& file) {
-  std::ifstream in(file, std::ios::binary);
-  return {std::istreambuf_iterator<char>(in), {}};
-}
-
 Ran play(const fs::path& scene) { return run({scene.string(), "--fast", "--ticks", "60", "--strict", "--hash"}, "/"); }
 
 TEST(New, AShowIsWholeAndPlays) {

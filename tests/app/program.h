@@ -10,6 +10,7 @@
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
+#include <iterator>
 #include <string>
 #include <utility>
 #include <vector>
@@ -27,6 +28,12 @@ struct Ran {
   std::string out;
   std::string err;
 };
+
+/// The bytes of a file; none where it can't be read.
+inline std::string content(const std::filesystem::path& file) {
+  std::ifstream in(file, std::ios::binary);
+  return {std::istreambuf_iterator<char>(in), {}};
+}
 
 /// A program that runs in a folder (the checkout), with its output read as it comes. What still runs at the end is
 /// ended, by its id.

@@ -16,7 +16,7 @@ using osc_test::Bytes;
 using osc_test::one_float;
 using query_test::WebClient;
 
-constexpr const char* kScene = R"(
+constexpr const char* kWindyScene = R"(
 params { { "wind", 0, min = 0, max = 10 }, { "style", "calm", choices = { "calm", "wild" } } }
 local shape = sim:add_sphere_shape("ball", 0.1)
 local body = sim:add_body("ball")
@@ -25,19 +25,19 @@ osc:on("/more", function() body:copy("more") end)
 osc:on("/less", function() sim:body("more"):remove() end)
 )";
 
-struct Player {
+struct WebPlayer {
   Folder folder;
   Running running;
   Endpoint osc{0x7f000001, 0};
   std::uint16_t web = 0;
 
-  explicit Player(const std::vector<std::string>& more = {}) : running(limber(words(more))) {
+  explicit WebPlayer(const std::vector<std::string>& more = {}) : running(limber(words(more))) {
     EXPECT_TRUE(running.wait_for("playing headless")) << running.err();
     osc.port = number_behind("OSC in 127.0.0.1:");
     web = number_behind("remote panel http://127.0.0.1:");
   }
   std::vector<std::string> words(const std::vector<std::string>& more) const {
-    std::vector<std::string> all = {folder.file("s.lua", kScene), "--osc-in", "127.0.0.1:0", "--osc-out", "off"};
+    std::vector<std::string> all = {folder.file("s.lua", kWindyScene), "--osc-in", "127.0.0.1:0", "--osc-out", "off"};
     all.insert(all.end(), more.begin(), more.end());
     return all;
   }
@@ -53,7 +53,7 @@ std::string text_message(std::string_view address, std::string_view word) {
 }
 
 TEST(Query, OneHandsChangeReachesTheOthersOnceWhateverTheirWay) {
-  const Player player;
+  const WebPlayer player;
   ASSERT_NE(player.web, 0);
   WebClient one(player.web);
   WebClient two(player.web);
@@ -83,7 +83,7 @@ TEST(Query, OneHandsChangeReachesTheOthersOnceWhateverTheirWay) {
 }
 
 TEST(Query, ValuesAndAnswersOfEveryKind) {
-  const Player player;
+  const WebPlayer player;
   WebClient client(player.web);
   ASSERT_EQ(client.upgrade().status, 101);
   client.binary(text_message("/scene/style", "wild"));
@@ -113,7 +113,7 @@ TEST(Query, ValuesAndAnswersOfEveryKind) {
 }
 
 TEST(Query, TheTreeFollowsTheScene) {
-  const Player player;
+  const WebPlayer player;
   WebClient client(player.web);
   WebClient http(player.web);
   ASSERT_EQ(client.upgrade().status, 101);
@@ -130,7 +130,7 @@ TEST(Query, TheTreeFollowsTheScene) {
 }
 
 TEST(Query, ThePageIsWholeAndAsksNobodyElse) {
-  const Player player;
+  const WebPlayer player;
   WebClient client(player.web);
   const query_test::Reply page = client.get("/", "Accept: text/html\r\n");
   EXPECT_EQ(page.status, 200);
@@ -157,11 +157,11 @@ TEST(Query, ListensWhereItIsTold) {
   {
     Folder folder;
     Running running(
-        limber({folder.file("s.lua", kScene), "--osc-in", "127.0.0.1:0", "--osc-out", "off", "--query", port}));
+        limber({folder.file("s.lua", kWindyScene), "--osc-in", "127.0.0.1:0", "--osc-out", "off", "--query", port}));
     ASSERT_TRUE(running.wait_for("remote panel http://127.0.0.1:" + port + "/")) << running.err();
   }
   Folder folder;
-  const std::string scene = folder.file("s.lua", kScene);
+  const std::string scene = folder.file("s.lua", kWindyScene);
   const Ran off = run({scene, "--fast", "--ticks", "1"});
   EXPECT_NE(off.err.find("OSCQuery off"), std::string::npos) << off.err;
   const Ran on = run({scene, "--fast", "--ticks", "1", "--query", "127.0.0.1:0"});
@@ -170,9 +170,9 @@ TEST(Query, ListensWhereItIsTold) {
 
 TEST(Query, ATakenPortIsSurvivedWhereItIsOptional) {
   Folder folder;
-  Player first;
+  WebPlayer first;
   const std::string port = std::to_string(first.web);
-  const std::vector<std::string> words = {folder.file("s.lua", kScene), "--fast", "--ticks", "3", "--query", port};
+  const std::vector<std::string> words = {folder.file("s.lua", kWindyScene), "--fast", "--ticks", "3", "--query", port};
   const Ran taken = run(words);
   EXPECT_EQ(taken.code, 3);
   EXPECT_NE(taken.err.find("OSCQuery can't listen on 127.0.0.1:" + port), std::string::npos) << taken.err;
@@ -184,7 +184,7 @@ TEST(Query, ATakenPortIsSurvivedWhereItIsOptional) {
 }
 
 TEST(Query, SendersThatAreLeftOutAreLeftOutHereToo) {
-  const Player player({"--osc-allow", "192.0.2.0/24"});
+  const WebPlayer player({"--osc-allow", "192.0.2.0/24"});
   WebClient client(player.web);
   EXPECT_EQ(client.get("/").status, 403);
 }

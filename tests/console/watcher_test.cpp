@@ -9,7 +9,7 @@ namespace {
 using engine_test::Show;
 using Wish = ConsoleRequest::Wish;
 
-constexpr const char* kScene = R"(
+constexpr const char* kWatchedScene = R"(
 params { { "wind", 2, min = 0, max = 10 } }
 local ball = sim:add_sphere_shape("ball", 0.1)
 sim:add_body("one"):add_part("p", ball, { position = vec3(0, 0, 5) })
@@ -78,7 +78,7 @@ TEST(Watcher, TellsTrafficOfItsPattern) {
 }
 
 TEST(Watcher, TellsChangesOfEveryProperty) {
-  const engine_test::SceneFile file(kScene);
+  const engine_test::SceneFile file(kWatchedScene);
   Show show(file.path());
   Watching changes(show.link, Wish::changes);
   const auto after = [&] {
@@ -103,7 +103,7 @@ TEST(Watcher, TellsChangesOfEveryProperty) {
 }
 
 TEST(Watcher, TellsAnyKindWhereAPatternSaysSo) {
-  const engine_test::SceneFile file(kScene);
+  const engine_test::SceneFile file(kWatchedScene);
   Show show(file.path());
   Watching falls(show.link, Wish::changes, "/physics/body/one/part/*/linear_velocity");
   falls.told();

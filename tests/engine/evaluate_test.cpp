@@ -9,7 +9,7 @@
 namespace limber::engine_test {
 namespace {
 
-using Kind = Evaluation::Kind;
+using AnswerKind = Evaluation::Kind;
 
 /// What was answered, and on which tick.
 struct Answers {
@@ -44,7 +44,7 @@ TEST_F(EvaluateTest, IsDoneBeforeTheTickInTheOrderOfArrival) {
   EXPECT_TRUE(answers.said.empty()) << "nothing happens while no tick comes";
   show.ticks(1);
   ASSERT_EQ(answers.said.size(), 3U);
-  EXPECT_EQ(answers.said[0].kind, Kind::done);
+  EXPECT_EQ(answers.said[0].kind, AnswerKind::done);
   EXPECT_EQ(text(2), "0");
   push(show, "seen, sim.tick");
   show.ticks(1);
@@ -72,7 +72,7 @@ TEST_F(EvaluateTest, MistypedTextIsNoFaultOfTheShow) {
   push(show, "nothing.at.all");
   show.ticks(1);
   ASSERT_EQ(answers.said.size(), 1U);
-  EXPECT_EQ(answers.said[0].kind, Kind::error);
+  EXPECT_EQ(answers.said[0].kind, AnswerKind::error);
   EXPECT_EQ(show.engine.faults(), 0U);
   EXPECT_EQ(log_count(LogLevel::error), errors);
   EXPECT_TRUE(show.outbox().empty()) << "nobody on the network hears of it";

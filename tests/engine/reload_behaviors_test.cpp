@@ -5,7 +5,7 @@
 namespace limber::engine_test {
 namespace {
 
-constexpr const char* kShow = R"(
+constexpr const char* kBehaviorShow = R"(
 sim.gravity = vec3()
 local ball = sim:add_sphere_shape("ball", 0.05)
 for i = 1, 3 do
@@ -25,7 +25,7 @@ constexpr const char* kCount = R"(return behavior {
 }
 )";
 
-Edited a_show() { return Edited(kShow, {{"behaviors_lua/count.lua", kCount}}); }
+Edited a_show() { return Edited(kBehaviorShow, {{"behaviors_lua/count.lua", kCount}}); }
 
 double value(Edited& edited, const std::string& body, const std::string& behavior, const std::string& row) {
   const Behavior& b = *edited.body(body).find_behavior(behavior);
@@ -42,7 +42,7 @@ double counted(Edited& edited) {
 }
 
 TEST(ReloadBehaviors, WhatIsSaidAsBeforeStaysAsTheHandLeftIt) {
-  Edited edited(kShow, {{"behaviors_lua/count.lua", kCount}});
+  Edited edited(kBehaviorShow, {{"behaviors_lua/count.lua", kCount}});
   edited.show().ticks(10);
   hand(edited, "b1", "push", "amp", 7);
   hand(edited, "b2", "together", "amount", 9);
@@ -70,7 +70,7 @@ TEST(ReloadBehaviors, AnEditThatChangesNothingChangesNoBit) {
 }
 
 TEST(ReloadBehaviors, StateOfAFileIsKeptAndItsNewFormulaActs) {
-  Edited edited(kShow, {{"behaviors_lua/count.lua", kCount}});
+  Edited edited(kBehaviorShow, {{"behaviors_lua/count.lua", kCount}});
   edited.show().ticks(10);
   EXPECT_NEAR(counted(edited), 10, 1e-9);
   std::string faster = kCount;
@@ -82,7 +82,7 @@ TEST(ReloadBehaviors, StateOfAFileIsKeptAndItsNewFormulaActs) {
 }
 
 TEST(ReloadBehaviors, MigrateBringsTheStateOver) {
-  Edited edited(kShow, {{"behaviors_lua/count.lua", kCount}});
+  Edited edited(kBehaviorShow, {{"behaviors_lua/count.lua", kCount}});
   edited.show().ticks(10);
   edited.folder.write("behaviors_lua/count.lua", R"(return behavior {
   start = function(self) self.state.total = 0 end,
@@ -95,7 +95,7 @@ TEST(ReloadBehaviors, MigrateBringsTheStateOver) {
 }
 
 TEST(ReloadBehaviors, ParametersOfAFileFollowItsEdits) {
-  Edited edited(kShow, {{"behaviors_lua/count.lua", kCount}});
+  Edited edited(kBehaviorShow, {{"behaviors_lua/count.lua", kCount}});
   edited.show().ticks(10);
   hand(edited, "b1", "counter", "by", 3);
   const auto declare = [&](const std::string& params) {
@@ -114,7 +114,7 @@ TEST(ReloadBehaviors, ParametersOfAFileFollowItsEdits) {
 }
 
 TEST(ReloadBehaviors, TheyComeGoAndAreMadeAnew) {
-  Edited edited(kShow, {{"behaviors_lua/count.lua", kCount}});
+  Edited edited(kBehaviorShow, {{"behaviors_lua/count.lua", kCount}});
   edited.show().ticks(3);
   EXPECT_EQ(edited.edit("--MORE", R"(b1:add_behavior("speed", "pace", { speed = 2 })
 sim:add_group_behavior("separation", "apart")
@@ -136,18 +136,18 @@ sim:add_group_behavior("separation", "apart")
 }
 
 TEST(ReloadBehaviors, TheyActInTheOrderOfTheScene) {
-  Edited edited(kShow, {{"behaviors_lua/count.lua", kCount}});
+  Edited edited(kBehaviorShow, {{"behaviors_lua/count.lua", kCount}});
   EXPECT_EQ(edited.world().behaviors().order(), (std::vector<std::string>{"b1/push", "b1/counter", "/together"}));
   EXPECT_EQ(edited.edit("b1:add_behavior(\"force\", \"push\", { amp = 1, dir = vec3(1, 0, 0) })\n", ""),
             Reload::End::applied);
   EXPECT_EQ(edited.edit("--MORE", "b1:add_behavior(\"force\", \"push\")"), Reload::End::applied);
   EXPECT_EQ(edited.world().behaviors().order(), (std::vector<std::string>{"b1/counter", "/together", "b1/push"}));
-  EXPECT_EQ(edited.save(std::string("local b\n") + kShow), Reload::End::applied);
+  EXPECT_EQ(edited.save(std::string("local b\n") + kBehaviorShow), Reload::End::applied);
   EXPECT_EQ(edited.world().behaviors().order(), (std::vector<std::string>{"b1/push", "b1/counter", "/together"}));
 }
 
 TEST(ReloadBehaviors, OfABodyThatIsMadeAnewTheyKeepTheirValues) {
-  Edited edited(kShow, {{"behaviors_lua/count.lua", kCount}});
+  Edited edited(kBehaviorShow, {{"behaviors_lua/count.lua", kCount}});
   edited.show().ticks(3);
   hand(edited, "b1", "push", "amp", 5);
   EXPECT_EQ(edited.edit("sphere_shape(\"ball\", 0.05)", "sphere_shape(\"ball\", 0.1)"), Reload::End::applied);
@@ -159,7 +159,7 @@ TEST(ReloadBehaviors, OfABodyThatIsMadeAnewTheyKeepTheirValues) {
 }
 
 TEST(ReloadBehaviors, HandlesOfTheNewRunMeanTheLiveOnes) {
-  Edited edited(kShow, {{"behaviors_lua/count.lua", kCount}});
+  Edited edited(kBehaviorShow, {{"behaviors_lua/count.lua", kCount}});
   edited.show().ticks(3);
   EXPECT_EQ(edited.edit("--MORE", R"(local push, group = b1:behavior("push"), sim:group_behavior("together")
 osc:on("/amp", function(x) push.amp = x group.amount = x end))"),
@@ -171,7 +171,7 @@ osc:on("/amp", function(x) push.amp = x group.amount = x end))"),
 }
 
 TEST(ReloadBehaviors, ABrokenFileChangesNothingAMendedOneTriesAgain) {
-  Edited edited(kShow, {{"behaviors_lua/count.lua", kCount}});
+  Edited edited(kBehaviorShow, {{"behaviors_lua/count.lua", kCount}});
   edited.show().ticks(5);
   edited.folder.write("behaviors_lua/count.lua", "return behavior {");
   EXPECT_EQ(edited.show().engine.reload_now(), Reload::End::failed);

@@ -6,7 +6,7 @@ namespace {
 
 using Texts = std::vector<std::string>;
 
-struct Case {
+struct ParamCase {
   const char* what;
   const char* before;
   Arg hand;
@@ -15,7 +15,7 @@ struct Case {
 };
 
 TEST(ReloadParams, DefaultsRangesAndTypes) {
-  const Case kCases[] = {
+  const ParamCase kCases[] = {
       {"untouched by the editor", "5, min = 0, max = 10", arg(7), "5, min = 0, max = 10, doc = 'x'", 7},
       {"an edited default", "5, min = 0, max = 10", arg(7), "6, min = 0, max = 10", 6},
       {"outside of the new range", "5, min = 0, max = 10", arg(7), "5, min = 0, max = 6", 6},
@@ -26,7 +26,7 @@ TEST(ReloadParams, DefaultsRangesAndTypes) {
       {"a label that is gone", "'a', choices = { 'a', 'b', 'c' }", arg("c"), "'a', choices = { 'b', 'a' }", 1},
       {"another default label", "'a', choices = { 'a', 'b', 'c' }", arg("c"), "'b', choices = { 'a', 'b', 'c' }", 1},
   };
-  for (const Case& c : kCases) {
+  for (const ParamCase& c : kCases) {
     const auto scene = [](const char* spec) { return fmt::format("params {{ {{ 'p', {} }} }}", spec); };
     Edited edited(scene(c.before));
     edited.show().send("/scene/p", c.hand);

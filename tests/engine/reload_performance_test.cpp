@@ -7,7 +7,7 @@
 namespace limber::engine_test {
 namespace {
 
-constexpr const char* kShow = R"(
+constexpr const char* kHeavyShow = R"(
 sim.gravity = vec3(0, 0, 0)
 local s = sim:add_sphere_shape("s", 0.1)
 local stone = sim:add_body("stone")
@@ -21,7 +21,7 @@ osc:on("/shape", function() sim:add_body("box"):add_part("b", sim:add_box_shape(
 )";
 
 TEST(ReloadPerformance, WhatCallbacksMadeOutlivesReloadsAndGoesWithAReset) {
-  Edited edited(kShow);
+  Edited edited(kHeavyShow);
   edited.show().send("/copy", "mine");
   edited.show().send("/shape");
   edited.show().ticks(30);
@@ -38,7 +38,7 @@ TEST(ReloadPerformance, WhatCallbacksMadeOutlivesReloadsAndGoesWithAReset) {
 }
 
 TEST(ReloadPerformance, ASceneTakesOverWhatItComesToDescribe) {
-  Edited edited(kShow);
+  Edited edited(kHeavyShow);
   edited.show().send("/copy", "mine");
   edited.show().ticks(30);
   const NodeId id = edited.body("mine").id();
@@ -57,7 +57,7 @@ TEST(ReloadPerformance, ASceneTakesOverWhatItComesToDescribe) {
 }
 
 TEST(ReloadPerformance, AStrangerOfAnotherMakingIsMadeAnewInItsPlace) {
-  Edited edited(kShow);
+  Edited edited(kHeavyShow);
   edited.show().send("/copy", "mine");
   edited.show().ticks(30);
   const Pose there = edited.part("mine", "p").pose();
@@ -69,7 +69,7 @@ TEST(ReloadPerformance, AStrangerOfAnotherMakingIsMadeAnewInItsPlace) {
 }
 
 TEST(ReloadPerformance, WhatWasRemovedComesBackWhereTheSceneSays) {
-  Edited edited(kShow);
+  Edited edited(kHeavyShow);
   edited.show().ticks(3);
   edited.show().send("/physics/part/friction", "stone", 0.9);
   edited.show().send("/physics/body/stone/remove");
@@ -85,7 +85,7 @@ TEST(ReloadPerformance, WhatWasRemovedComesBackWhereTheSceneSays) {
 }
 
 TEST(ReloadPerformance, ACallbackMayReplaceABodyByAnotherOfItsName) {
-  Edited edited(std::string(kShow) + R"(
+  Edited edited(std::string(kHeavyShow) + R"(
 osc:on("/swap", function()
   stone:remove()
   sim:add_body("stone"):add_part("p", sim:add_box_shape("brick", vec3(1, 1, 1)), { position = vec3(0, 0, 9) })

@@ -6,7 +6,7 @@
 namespace limber::engine_test {
 namespace {
 
-constexpr const char* kShow = R"(
+constexpr const char* kThingsShow = R"(
 sim.gravity = vec3(0, 0, -9.81)
 local kAxis = vec3(0, 1, 0)
 local ball = sim:add_sphere_shape("ball", 0.05)
@@ -24,8 +24,8 @@ stone:add_part("stone", ball, { position = vec3(0, 3, 4), linear_velocity = vec3
 )";
 
 TEST(ReloadThings, AnEditThatChangesNothingChangesNoBit) {
-  Edited edited(kShow);
-  Edited control(kShow);
+  Edited edited(kThingsShow);
+  Edited control(kThingsShow);
   for (int i = 0; i < 5; i++) {
     edited.show().ticks(13);
     control.show().ticks(13);
@@ -35,8 +35,8 @@ TEST(ReloadThings, AnEditThatChangesNothingChangesNoBit) {
 }
 
 TEST(ReloadThings, WhatIsNotToldDifferentlyGoesOnToTheBit) {
-  Edited edited(kShow);
-  Edited control(kShow);
+  Edited edited(kThingsShow);
+  Edited control(kThingsShow);
   edited.show().ticks(20);
   control.show().ticks(20);
   const NodeId arm = edited.body("arm").id();
@@ -56,7 +56,7 @@ more:add_part("more", sim:add_box_shape("box", vec3(1, 1, 1)), { position = vec3
 }
 
 TEST(ReloadThings, NewOnesComeOthersGo) {
-  Edited edited(kShow);
+  Edited edited(kThingsShow);
   edited.show().ticks(5);
   EXPECT_EQ(edited.edit(R"(sim:add_body("stone"))", R"(sim:add_body("pebble"))"), Reload::End::applied);
   EXPECT_EQ(edited.world().find_body("stone"), nullptr);
@@ -92,7 +92,7 @@ TEST(ReloadThings, BodiesStandInTheOrderOfTheScene) {
 }
 
 TEST(ReloadThings, AnEditedStartMovesTheBodyWithPostureAndSpeed) {
-  Edited edited(kShow);
+  Edited edited(kThingsShow);
   edited.show().ticks(30);
   const Pose root = edited.body("arm").pose();
   const Vec3 tip = edited.part("arm", "tip").pose().position;
@@ -115,7 +115,7 @@ TEST(ReloadThings, AnEditedStartMovesTheBodyWithPostureAndSpeed) {
 }
 
 TEST(ReloadThings, APlaceThatIsNotEditedIsNotTouched) {
-  Edited edited(kShow);
+  Edited edited(kThingsShow);
   edited.show().ticks(30);
   const std::vector<double> there = motion_of(edited.part("stone", "stone"));
   edited.edit("linear_velocity = vec3(1, 0, 0)", "linear_velocity = vec3(1, 0, 0), friction = 0.1");
@@ -154,7 +154,7 @@ end)",
 }
 
 TEST(ReloadThings, AnotherShapeMakesTheBodyAnewWhereItIs) {
-  Edited edited(kShow);
+  Edited edited(kThingsShow);
   edited.show().send("/physics/part/friction", "arm", "tip", 0.9);
   edited.show().ticks(25);
   const Pose tip = edited.part("arm", "tip").pose();
@@ -175,7 +175,7 @@ TEST(ReloadThings, AnotherShapeMakesTheBodyAnewWhereItIs) {
 }
 
 TEST(ReloadThings, AnotherFrameKeepsAnglesAndSpeeds) {
-  Edited edited(kShow);
+  Edited edited(kThingsShow);
   edited.show().ticks(25);
   const auto joint = [&](const char* name) -> Joint& { return *edited.body("arm").find_joint(name); };
   const double shoulder = joint("shoulder").value();
@@ -195,7 +195,7 @@ TEST(ReloadThings, AnotherFrameKeepsAnglesAndSpeeds) {
 }
 
 TEST(ReloadThings, AnotherTypeOfJointStartsAsItWasMade) {
-  Edited edited(kShow);
+  Edited edited(kThingsShow);
   edited.show().send("/physics/part/friction", "arm", "tip", 0.9);
   edited.show().ticks(20);
   const Pose upper = edited.part("arm", "upper").pose();
@@ -211,7 +211,7 @@ TEST(ReloadThings, AnotherTypeOfJointStartsAsItWasMade) {
 }
 
 TEST(ReloadThings, StaticOrNotIsMaking) {
-  Edited edited(kShow);
+  Edited edited(kThingsShow);
   edited.show().ticks(20);
   const Vec3 tip = edited.part("arm", "tip").pose().position;
   edited.edit(R"("base", ball, { mass = 0,)", R"("base", ball, { mass = 3,)");

@@ -21,7 +21,7 @@ std::string arm_with(const std::string& line) {
   return text.replace(text.find("--LINE"), 6, line);
 }
 
-struct Case {
+struct ValueCase {
   const char* what;
   const char* before;
   const char* after;
@@ -30,7 +30,7 @@ struct Case {
 
 TEST(ReloadValues, OneRuleWhoeverActedLast) {
   // friction is 0.5 by default; the hand sets 0.9 between the two runs
-  constexpr Case kCases[] = {
+  constexpr ValueCase kCases[] = {
       {"said otherwise", "tip.friction = 0.2", "tip.friction = 0.3", 0.3},
       {"said as before", "tip.friction = 0.2", "tip.friction = 0.2", 0.9},
       {"said as before, written otherwise", "tip.friction = 0.2",
@@ -43,7 +43,7 @@ TEST(ReloadValues, OneRuleWhoeverActedLast) {
       {"said for the first time, equals the default", "", "tip.friction = 0.5", 0.5},
       {"something else is said", "tip.friction = 0.2", "tip.friction = 0.2 tip.restitution = 0.1", 0.9},
   };
-  for (const Case& c : kCases) {
+  for (const ValueCase& c : kCases) {
     Edited edited(arm_with(c.before));
     edited.show().send("/physics/part/friction", "arm", "tip", 0.9);
     edited.show().ticks(2);

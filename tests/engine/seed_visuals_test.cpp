@@ -13,18 +13,18 @@ using Kind = Outcome::Kind;
 std::string path_of(const char* shape, const Address& a) { return fmt::format("/visuals/shape/{}/{}", shape, a.row); }
 
 // of one of the two shapes, `ball` and `ground`
-struct Form {
+struct VisualForm {
   std::vector<Arg> names;
   bool ball;
   bool ground;
 };
 
 TEST(SeedVisuals, EveryAddressOfShapesInEveryForm) {
-  const Form forms[] = {{{}, true, true},
-                        {{arg("ball")}, true, false},
-                        {{arg("ground")}, false, true},
-                        {{arg("b*")}, true, false},
-                        {{arg("{ball,ground}")}, true, true}};
+  const VisualForm forms[] = {{{}, true, true},
+                              {{arg("ball")}, true, false},
+                              {{arg("ground")}, false, true},
+                              {{arg("b*")}, true, false},
+                              {{arg("{ball,ground}")}, true, true}};
   for (const Address& a : kOfShapes) {
     for (std::size_t f = 0; f < std::size(forms); f++) {
       SCOPED_TRACE(fmt::format("{} form {}", seed_address(a), f));

@@ -2,7 +2,6 @@
 // one of OSCQuery's, its JSON is JSON, and nobody is let in whose host is not ours.
 #include <cstddef>
 #include <cstdint>
-#include <cstdlib>
 #include <memory>
 #include <string_view>
 #include <vector>
@@ -13,16 +12,12 @@
 #include "base/text.h"
 #include "engine/everything.h"
 #include "engine/image_of.h"
+#include "fuzz/target.h"
 #include "query/request.h"
 
 namespace {
 
 using namespace limber;
-
-// a fault that no sanitizer sees
-void require(bool condition) {
-  if (!condition) std::abort();
-}
 
 // a world that stands still: requests change nothing
 std::shared_ptr<const Image> make_image() {
@@ -39,12 +34,12 @@ std::optional<std::string> header(std::string_view line) {
 
 void check(const HttpAnswer& answer) {
   const int s = answer.status;
-  require(s == 200 || s == 204 || s == 400 || s == 403 || s == 404 || s == 405);
-  if (s == 204) require(answer.body.empty());
+  must(s == 200 || s == 204 || s == 400 || s == 403 || s == 404 || s == 405);
+  if (s == 204) must(answer.body.empty());
   if (s >= 400)
-    require(!answer.body.empty() && printable(answer.body) == answer.body.substr(0, answer.body.size() - 1) + "\n");
-  if (answer.type == "application/json") require(nlohmann::json::accept(answer.body));
-  require(answer.policy.find_first_of("\r\n") == std::string::npos);
+    must(!answer.body.empty() && printable(answer.body) == answer.body.substr(0, answer.body.size() - 1) + "\n");
+  if (answer.type == "application/json") must(nlohmann::json::accept(answer.body));
+  must(answer.policy.find_first_of("\r\n") == std::string::npos);
 }
 
 }  // namespace
@@ -63,7 +58,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   request.method = lines[4];
   const std::optional<HttpAnswer> stranger = refuse_stranger(request, info);
   const std::optional<HttpAnswer> at_once = answer_at_once(request, info);
-  if (stranger) require(at_once && at_once->status == stranger->status && stranger->status >= 400);
+  if (stranger) must(at_once && at_once->status == stranger->status && stranger->status >= 400);
   if (at_once) {
     check(*at_once);
   } else {

@@ -3,18 +3,10 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
-#include <cstdlib>
 #include <string_view>
 
+#include "fuzz/target.h"
 #include "model/mesh_load.h"
-
-namespace {
-
-void must(bool condition) {
-  if (!condition) std::abort();
-}
-
-}  // namespace
 
 // NOLINTNEXTLINE(readability-identifier-naming): libFuzzer's name
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
@@ -24,13 +16,13 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   const limber::Vec3 scale = data[0] % 2 == 0 ? limber::Vec3(1) : limber::Vec3(0.5, -2, 3);
   const auto mesh = limber::mesh_from_bytes(bytes, kFormats[data[0] / 2 % 3], scale, "fuzz");
   if (!mesh) {
-    must(!mesh.error().empty());
+    limber::must(!mesh.error().empty());
     return 0;
   }
   const limber::MeshModel& m = **mesh;
-  for (const limber::Vec3& v : m.vertices) must(limber::is_finite(v));
-  for (const unsigned t : m.triangles) must(t < m.vertices.size());
-  must(m.triangles.size() % 3 == 0 && m.hull.size() >= 4 && m.hull.size() <= 64);
-  must(std::isfinite(m.hull_error) && m.solid.mass > 0 && std::isfinite(m.solid.mass));
+  for (const limber::Vec3& v : m.vertices) limber::must(limber::is_finite(v));
+  for (const unsigned t : m.triangles) limber::must(t < m.vertices.size());
+  limber::must(m.triangles.size() % 3 == 0 && m.hull.size() >= 4 && m.hull.size() <= 64);
+  limber::must(std::isfinite(m.hull_error) && m.solid.mass > 0 && std::isfinite(m.solid.mass));
   return 0;
 }

@@ -7,15 +7,13 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
-#include <cstdlib>
 #include <cstring>
-#include <memory>
 #include <string_view>
 #include <vector>
 
-#include "base/log.h"
 #include "engine/engine.h"
 #include "engine/everything.h"
+#include "fuzz/target.h"
 #include "osc/encode.h"
 #include "osc/receiver.h"
 #include "osc/subscribers.h"
@@ -34,11 +32,6 @@ constexpr Endpoint kFrom{0x7f000001, 5000};
 constexpr std::uint64_t kPlayEvery = 16;      // inputs until they take effect, and a good message behind them
 constexpr std::uint64_t kStepEvery = 128;     // inputs between two steps of physics
 constexpr std::uint64_t kRenewEvery = 16384;  // inputs that a world sees
-
-// a fault that no sanitizer sees
-void require(bool condition) {
-  if (!condition) std::abort();
-}
 
 std::uint32_t u32_at(const char* data) {
   std::uint32_t value = 0;
@@ -63,7 +56,7 @@ std::string scene_file() {
   static const int file = [] {
     const int made = memfd_create("scene", 0);
     for (const std::string_view text : {std::string_view(engine_test::kEverything), kHandlers}) {
-      require(write(made, text.data(), text.size()) == static_cast<ssize_t>(text.size()));
+      must(write(made, text.data(), text.size()) == static_cast<ssize_t>(text.size()));
     }
     return made;
   }();
@@ -86,14 +79,14 @@ bool all_finite(std::span<const double> values) {
 class Desk {
  public:
   Desk() {
-    require(engine_.start().ok());
+    must(engine_.start().ok());
     bodies_ = engine_.world().bodies().size();
     clear_outbox();
   }
 
   // one input; now and then what came takes effect, and so does a good message behind it
-  void input(const char* data, std::size_t size) {
-    take(data, size);
+  void input(std::string_view bytes) {
+    take(bytes.data(), bytes.size());
     inputs_++;
     if (inputs_ % kPlayEvery == 0) play();
   }
@@ -111,8 +104,8 @@ class Desk {
     const bool whole = packet_fault(data, size) == nullptr;
     receiver_.take(data, size, kFrom);
     // oscpack takes whatever the validator has passed, and nothing comes of what it has not
-    require(counters.malformed - malformed == (whole ? 0u : 1u));
-    require(counters.received - received == (whole ? messages_in(data, size) : 0u));
+    must(counters.malformed - malformed == (whole ? 0u : 1u));
+    must(counters.received - received == (whole ? messages_in(data, size) : 0u));
   }
 
   void play() {
@@ -134,11 +127,11 @@ class Desk {
     engine_.tick();
 
     const Store& store = engine_.store();
-    require(store.values(engine_.world().id(), World::table().at("gravity"))[2] == gravity);
+    must(store.values(engine_.world().id(), World::table().at("gravity"))[2] == gravity);
     if (step) {
       // a reset begins time anew
-      require(engine_.world().tick() == tick + 1 || engine_.world().tick() <= 1);
-      require(all_finite(store.kept()) && all_finite(store.live()));
+      must(engine_.world().tick() == tick + 1 || engine_.world().tick() <= 1);
+      must(all_finite(store.kept()) && all_finite(store.live()));
     }
     check_counters(step);
   }
@@ -153,19 +146,19 @@ class Desk {
     link_.inbox.drain(commands_);
     for (Command& command : commands_) {
       for (const Message& message : command.messages) {
-        require(!message.address.empty() && message.address[0] == '/');
-        require(message.args.size() <= OscLimits::kMessageArguments);
+        must(!message.address.empty() && message.address[0] == '/');
+        must(message.args.size() <= OscLimits::kMessageArguments);
         check_packet(message);
         executed_++;
       }
-      require(link_.inbox.push(std::move(command)));
+      must(link_.inbox.push(std::move(command)));
     }
   }
 
   // what came in can be sent on, and what goes out is OSC
   void check_packet(const Message& message) {
     const std::span<const char> packet = encode_message(message, buffer_);
-    require(packet.empty() || packet_fault(packet.data(), packet.size()) == nullptr);
+    must(packet.empty() || packet_fault(packet.data(), packet.size()) == nullptr);
   }
 
   void clear_outbox() { link_.outbox.drain(outgoing_); }
@@ -179,8 +172,8 @@ class Desk {
     const Counters& counters = link_.counters;
     // every message came to one end, and each refusal was told to its sender
     const std::uint64_t ended = executed_ + pongs_ + subscribed_ + refused_here_ + counters.dropped;
-    require(nothing_is_held ? counters.received == ended : counters.received >= ended);
-    require(link_.outbox.dropped() > 0 || counters.refused + counters.unknown == errors_);
+    must(nothing_is_held ? counters.received == ended : counters.received >= ended);
+    must(link_.outbox.dropped() > 0 || counters.refused + counters.unknown == errors_);
   }
 
   EngineLink link_;
@@ -219,12 +212,5 @@ class Desk {
 
 // NOLINTNEXTLINE(readability-identifier-naming): libFuzzer's name
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* bytes, std::size_t size) {
-  static std::unique_ptr<Desk>& desk = *new std::unique_ptr<Desk>;  // lives as long as the process
-  if (desk == nullptr) {
-    log_to_stderr(false);
-    desk = std::make_unique<Desk>();
-  }
-  desk->input(reinterpret_cast<const char*>(bytes), size);
-  if (desk->worn()) desk.reset();
-  return 0;
+  return live_input<Desk>(bytes, size);
 }

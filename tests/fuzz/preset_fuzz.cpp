@@ -1,17 +1,15 @@
 // Any bytes as a file of presets, and as a pattrstorage: what is read can be written, read again and blended.
 #include <cstddef>
 #include <cstdint>
-#include <cstdlib>
 #include <string_view>
 
 #include "engine/preset_import.h"
 #include "engine/preset_text.h"
+#include "fuzz/target.h"
 
 namespace {
 
-void must(bool condition) {
-  if (!condition) std::abort();
-}
+using limber::must;
 
 void must_be_whole(const limber::Preset& preset) {
   must(preset.values.size() == preset.shape->width());

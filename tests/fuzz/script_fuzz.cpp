@@ -2,7 +2,6 @@
 // still run, and a callback that fails leaves the world as it was, bit for bit.
 #include <cstddef>
 #include <cstdint>
-#include <cstdlib>
 #include <cstring>
 #include <span>
 #include <string>
@@ -12,16 +11,13 @@
 #include <lua.hpp>
 
 #include "base/log.h"
+#include "fuzz/target.h"
 #include "script/context.h"
 #include "script/scene.h"
 #include "script/vm.h"
 
 namespace limber {
 namespace {
-
-void must(bool condition) {
-  if (!condition) std::abort();
-}
 
 struct SilentHost : ScriptHost {
   void send(Message) override {}

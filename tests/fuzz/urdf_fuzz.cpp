@@ -2,30 +2,26 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
-#include <cstdlib>
 #include <string_view>
 
+#include "fuzz/target.h"
 #include "model/mass_properties.h"
 #include "model/urdf_import.h"
 
 namespace {
-
-void must(bool condition) {
-  if (!condition) std::abort();
-}
 
 bool is_sound(const limber::Pose& pose) {
   return limber::is_finite(pose.position) && std::abs(glm::length(pose.rotation) - 1) < 1e-6;
 }
 
 void check_links(const limber::BodyModel& model) {
-  must(!model.links.empty() && model.links.size() == model.joints.size() + 1);
+  limber::must(!model.links.empty() && model.links.size() == model.joints.size() + 1);
   for (std::size_t i = 0; i < model.links.size(); ++i) {
     const limber::LinkModel& link = model.links[i];
-    must(is_sound(link.home) && is_sound(link.start) && std::isfinite(link.inertial.mass));
-    must(i == 0 || link.inertial.mass > 0);
-    if (link.inertial.mass > 0) must(limber::tensor_fault(link.inertial.tensor).empty());
-    for (const limber::PlacedShape& s : link.collisions) must(is_sound(s.origin));
+    limber::must(is_sound(link.home) && is_sound(link.start) && std::isfinite(link.inertial.mass));
+    limber::must(i == 0 || link.inertial.mass > 0);
+    if (link.inertial.mass > 0) limber::must(limber::tensor_fault(link.inertial.tensor).empty());
+    for (const limber::PlacedShape& s : link.collisions) limber::must(is_sound(s.origin));
   }
 }
 
@@ -33,11 +29,11 @@ void check_joints(const limber::BodyModel& model) {
   const int count = static_cast<int>(model.joints.size());
   for (int i = 0; i < count; ++i) {
     const limber::JointModel& j = model.joints[static_cast<std::size_t>(i)];
-    must(j.child == i + 1 && j.parent >= 0 && j.parent < j.child);
-    must(is_sound(j.frame_in_parent) && is_sound(j.frame_in_child) && std::isfinite(j.start));
-    must(j.effort > 0 && j.velocity >= 0 && j.damping >= 0 && j.friction >= 0);
-    must(!j.limited || (j.lower <= j.upper && j.start >= j.lower && j.start <= j.upper));
-    must(j.mimic < count && (j.mimic < 0 || model.joints[static_cast<std::size_t>(j.mimic)].mimic < 0));
+    limber::must(j.child == i + 1 && j.parent >= 0 && j.parent < j.child);
+    limber::must(is_sound(j.frame_in_parent) && is_sound(j.frame_in_child) && std::isfinite(j.start));
+    limber::must(j.effort > 0 && j.velocity >= 0 && j.damping >= 0 && j.friction >= 0);
+    limber::must(!j.limited || (j.lower <= j.upper && j.start >= j.lower && j.start <= j.upper));
+    limber::must(j.mimic < count && (j.mimic < 0 || model.joints[static_cast<std::size_t>(j.mimic)].mimic < 0));
   }
 }
 
@@ -51,11 +47,11 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   const std::string_view text(reinterpret_cast<const char*>(data), size);
   const auto model = limber::import_urdf_text(text, "/nonexistent/fuzz.urdf", options, meshes);
   if (!model) {
-    must(model.error().find("fuzz.urdf") != std::string::npos);
+    limber::must(model.error().find("fuzz.urdf") != std::string::npos);
     return 0;
   }
   check_links(**model);
   check_joints(**model);
-  for (const limber::Problem& p : (*model)->problems) must(!p.text.empty() && !p.cure.empty());
+  for (const limber::Problem& p : (*model)->problems) limber::must(!p.text.empty() && !p.cure.empty());
   return 0;
 }

@@ -12,14 +12,14 @@
 namespace limber {
 namespace {
 
-std::string read(const std::string& text, MeshSoup* into = nullptr) {
+std::string read_collada(const std::string& text, MeshSoup* into = nullptr) {
   const Result<MeshSoup> soup = soup_from_collada(text);
   if (soup && into) *into = *soup;
   return soup ? "read" : soup.error();
 }
 MeshSoup soup_of(const std::string& text) {
   MeshSoup soup;
-  EXPECT_EQ(read(text, &soup), "read") << text;
+  EXPECT_EQ(read_collada(text, &soup), "read") << text;
   return soup;
 }
 
@@ -115,9 +115,9 @@ TEST(MeshCollada, AccessorsPickTheCoordinates) {
       {"9 9 1 2 3 0 4 5 6 0 7 8 9.5", "source='#a' count='3' stride='4' offset='2'>" + xyz + "<param name='W'/>"},
       {"0 1 2 3 0 4 5 6 0 7 8 9.5", "source='#a' count='3' stride='4'><param/>" + xyz}};
   for (const auto& [array, accessor] : cases) expect_soup(soup_of(with(array, accessor)), expected, accessor);
-  EXPECT_EQ(read(with("1 2 3 4 5 6 7 8", "source='#a' count='3' stride='3'>" + xyz)),
+  EXPECT_EQ(read_collada(with("1 2 3 4 5 6 7 8", "source='#a' count='3' stride='3'>" + xyz)),
             "line 1: an accessor asks for 3 points, more than its 8 numbers hold. Export it again, or as binary STL.");
-  EXPECT_EQ(read(with("1 2 3 4 5 6", "source='#a' count='3' stride='2'>")),
+  EXPECT_EQ(read_collada(with("1 2 3 4 5 6", "source='#a' count='3' stride='2'>")),
             "line 1: an accessor of points has no X, Y and Z. Export it again, or as binary STL.");
 }
 
@@ -155,7 +155,8 @@ TEST(MeshCollada, UnitsScaleTheWholeScene) {
   for (const char* bad : {"0", "-1", "inf", "x", "1,0.1", ""}) {
     std::string broken = text;
     broken.replace(broken.find("0.01"), 4, bad);
-    EXPECT_EQ(read(broken), fmt::format("line 1: meter='{}' can't be. Export it again, or as binary STL.", bad));
+    EXPECT_EQ(read_collada(broken),
+              fmt::format("line 1: meter='{}' can't be. Export it again, or as binary STL.", bad));
   }
 }
 
@@ -227,7 +228,7 @@ TEST(MeshCollada, OnlyWhatTheSceneShowsIsRead) {
 
 TEST(MeshCollada, IndexListsHoldWholeNumbersOnly) {
   const auto list = [](const std::string& p) {
-    return read(primitive("<triangles>" + std::string(kInput) + "\n<p>" + p + "</p></triangles>"));
+    return read_collada(primitive("<triangles>" + std::string(kInput) + "\n<p>" + p + "</p></triangles>"));
   };
   EXPECT_EQ(list("0 1 2\n3 +4 0"), "read");
   for (const char* bad : {"0 1.5 2", "0 x 2", "0 <q/> 2", "<![CDATA[0 1 2]]>", "0 1 99999999999999999999"}) {
@@ -275,14 +276,14 @@ TEST(MeshCollada, FaultsHaveTheirLineAndACure) {
       {document("<source id='p'/>" + std::string(kVertices) + "<triangles>" + in + "<p>0 1 2</p></triangles>"),
        "line 1: a source has no <accessor>"}};
   for (const auto& [text, expected] : cases) {
-    EXPECT_EQ(read(text), expected + ". Export it again, or as binary STL.") << text;
+    EXPECT_EQ(read_collada(text), expected + ". Export it again, or as binary STL.") << text;
   }
 }
 
 TEST(MeshCollada, NodesMustNotInstanceThemselves) {
   const auto nodes = [](const std::string& text) {
     std::string whole = placed(kShape);
-    return read(whole.insert(9, "<library_nodes>" + text + "</library_nodes>"));
+    return read_collada(whole.insert(9, "<library_nodes>" + text + "</library_nodes>"));
   };
   EXPECT_NE(nodes("<node id=\"a\"><instance_node url=\"#a\"/></node>").find("circle"), std::string::npos);
   EXPECT_NE(nodes("<node id=\"a\"><node><instance_node url=\"#b\"/></node></node><node name=\"b\"><instance_node "
@@ -305,7 +306,7 @@ TEST(MeshCollada, ManyInstancesOfMuchAreTooMuch) {
   std::string shapes, corners;
   for (int i = 0; i < 2000; ++i) shapes += kShape, corners += "0 1 2 ";
   const auto with = [&](const std::string& instances) {
-    return read(document(
+    return read_collada(document(
         std::string(kSource) + kVertices + "<triangles>" + kInput + "<p>" + corners + "</p></triangles>", instances));
   };
   EXPECT_EQ(with(kShape), "read");

@@ -8,7 +8,7 @@
 namespace limber {
 namespace {
 
-std::string read(const std::string& text, MeshSoup* into = nullptr) {
+std::string read_obj(const std::string& text, MeshSoup* into = nullptr) {
   const Result<MeshSoup> soup = soup_from_obj(text);
   if (soup && into) *into = *soup;
   return soup ? "read" : soup.error();
@@ -37,14 +37,14 @@ TEST(MeshObj, EveryHandwritingGivesTheSameTriangle) {
                                    vertices + "f 1 2 3\nf\nf 1\nf 1 2\nend"};
   for (const std::string& text : texts) {
     MeshSoup soup;
-    EXPECT_EQ(read(text, &soup), "read") << text;
+    EXPECT_EQ(read_obj(text, &soup), "read") << text;
     EXPECT_EQ(soup, expected) << text;
   }
 }
 
 TEST(MeshObj, NegativeIndicesCountFromTheFaceBack) {
   MeshSoup soup;
-  EXPECT_EQ(read("v 0 0 0\nv 1 0 0\nv 0 1 0\nf -3 -2 -1\nv 0 0 5\nf -3 -2 -1\n", &soup), "read");
+  EXPECT_EQ(read_obj("v 0 0 0\nv 1 0 0\nv 0 1 0\nf -3 -2 -1\nv 0 0 5\nf -3 -2 -1\n", &soup), "read");
   EXPECT_EQ(soup, MeshSoup({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 5}}));
 }
 
@@ -73,7 +73,7 @@ TEST(MeshObj, PolygonsMakeAClosedSolid) {
 
 TEST(MeshObj, NumbersKeepTheirDigits) {
   MeshSoup soup;
-  EXPECT_EQ(read("v 0.1 1.23456789012345 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n", &soup), "read");
+  EXPECT_EQ(read_obj("v 0.1 1.23456789012345 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n", &soup), "read");
   EXPECT_EQ(soup.at(0), Vec3(0.1, 1.23456789012345, 0));
 }
 
@@ -96,7 +96,7 @@ TEST(MeshObj, FaultsHaveTheirLineAndACure) {
       {v + "v 1e300 1 2 1e-300\n", "line 4: a vertex is not finite"},
       {v + "v \x1b[31m 1 2\n", "line 4: '\\x1b[31m' is no finite number"}};
   for (const auto& [text, expected] : cases) {
-    EXPECT_EQ(read(text), expected + ". Export it again, or as binary STL.") << text;
+    EXPECT_EQ(read_obj(text), expected + ". Export it again, or as binary STL.") << text;
   }
 }
 

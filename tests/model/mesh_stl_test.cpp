@@ -15,7 +15,7 @@ namespace {
 
 const MeshSoup kTriangle{{0, 0, 0}, {1, 0, 0}, {0, 0.5, -2}};
 
-std::string read(const std::string& text, MeshSoup* into = nullptr) {
+std::string read_stl(const std::string& text, MeshSoup* into = nullptr) {
   const Result<MeshSoup> soup = soup_from_stl(text);
   if (soup && into) *into = *soup;
   return soup ? "read" : soup.error();
@@ -46,7 +46,7 @@ TEST(MeshStl, AsciiIsReadInEveryHandwriting) {
       "solid a\n" + facet(vertices, "nan -nan(ind) inf") + "endsolid a\n"};
   for (const std::string& text : texts) {
     MeshSoup soup;
-    EXPECT_EQ(read(text, &soup), "read") << text;
+    EXPECT_EQ(read_stl(text, &soup), "read") << text;
     EXPECT_EQ(soup, kTriangle) << text;
   }
 }
@@ -63,15 +63,16 @@ TEST(MeshStl, SeveralSolidsAreOneMesh) {
 
 TEST(MeshStl, FacetsWithMoreCornersAreCut) {
   MeshSoup soup;
-  EXPECT_EQ(read("solid\n" + facet("vertex 0 0 0 vertex 1 0 0 vertex 1 1 0 vertex 0 1 0\n") + "endsolid", &soup),
+  EXPECT_EQ(read_stl("solid\n" + facet("vertex 0 0 0 vertex 1 0 0 vertex 1 1 0 vertex 0 1 0\n") + "endsolid", &soup),
             "read");
   EXPECT_EQ(soup, MeshSoup({{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 0, 0}, {1, 1, 0}, {0, 1, 0}}));
 }
 
 TEST(MeshStl, AsciiNumbersKeepTheirDigits) {
   MeshSoup soup;
-  EXPECT_EQ(read("solid\n" + facet("vertex 0.1 0 0 vertex 1.23456789012345 0 0 vertex 0 1 0\n") + "endsolid", &soup),
-            "read");
+  EXPECT_EQ(
+      read_stl("solid\n" + facet("vertex 0.1 0 0 vertex 1.23456789012345 0 0 vertex 0 1 0\n") + "endsolid", &soup),
+      "read");
   EXPECT_EQ(soup.at(0).x, 0.1);
   EXPECT_EQ(soup.at(1).x, 1.23456789012345);
 }
@@ -84,18 +85,18 @@ TEST(MeshStl, BinaryIsWhatIsAsLongAsItSays) {
   for (const char* header : {"binary", "solid facet vertex endsolid"}) {
     for (const char* tail : {"", "and more"}) {
       MeshSoup soup;
-      EXPECT_EQ(read(test::binary_stl(one, header) + tail, &soup), "read") << header << tail;
+      EXPECT_EQ(read_stl(test::binary_stl(one, header) + tail, &soup), "read") << header << tail;
       EXPECT_EQ(soup, kTriangle) << header << tail;
     }
   }
   std::string bytes = test::binary_stl(one);
   const float infinite = HUGE_VALF;
   std::memcpy(bytes.data() + 84 + 12, &infinite, 4);
-  EXPECT_EQ(read(bytes), "triangle 1 has a vertex that is not finite. Export it again.");
+  EXPECT_EQ(read_stl(bytes), "triangle 1 has a vertex that is not finite. Export it again.");
   std::string many(84 + 50 * 2'000'001ul, '\0');
   const std::uint32_t count = 2'000'001;
   std::memcpy(many.data() + 80, &count, 4);
-  EXPECT_EQ(read(many), "has more than 2000000 triangles. Simplify it.");
+  EXPECT_EQ(read_stl(many), "has more than 2000000 triangles. Simplify it.");
 }
 
 TEST(MeshStl, FaultsHaveTheirLineAndACure) {
@@ -116,7 +117,7 @@ TEST(MeshStl, FaultsHaveTheirLineAndACure) {
        "line 7: 'vertx' stands where ASCII STL has no such word"},
       {"solid a\nendsolid a\n" + facet(good), "line 3: 'facet' stands where ASCII STL has no such word"}};
   for (const auto& [text, expected] : cases) {
-    const std::string said = read(text);
+    const std::string said = read_stl(text);
     EXPECT_EQ(said.substr(0, expected.size()), expected) << text;
     EXPECT_EQ(said.substr(std::min(said.size(), said.size() - cure.size())), cure) << said;
   }

@@ -83,7 +83,7 @@ class Child {
   std::string text_;
 };
 
-OscOptions options_to(std::uint16_t port) {
+OscOptions options_to_port(std::uint16_t port) {
   OscOptions options;
   options.in = *parse_osc_in("0");
   options.out = *parse_osc_out("127.0.0.1:" + std::to_string(port) + ",rate=100,streams=pos+rot");
@@ -92,7 +92,7 @@ OscOptions options_to(std::uint16_t port) {
 
 TEST(Clients, OscsendPlays) {
   FakeEngine engine;
-  Network network(engine.link, options_to(9), kTestOffsets);
+  Network network(engine.link, options_to_port(9), kTestOffsets);
   ASSERT_TRUE(network.start().ok());
   const std::string url = "osc.udp://127.0.0.1:" + std::to_string(network.bound().at(0).port);
   EXPECT_EQ(Child({"oscsend", url, "/physics/part/mass", "ssf", "quadruped", "foot_1", "0.25"}).status(), 0);
@@ -128,7 +128,7 @@ TEST(Clients, OscdumpReadsTheStreams) {
   const auto spare = engine.link.snapshots.spare();
   *spare = world;
   engine.link.snapshots.publish(spare);
-  Network network(engine.link, options_to(port), kTestOffsets);
+  Network network(engine.link, options_to_port(port), kTestOffsets);
   ASSERT_TRUE(network.start().ok());
   // the block's numbers are a quarter of their place: position at 1, rotation at 4
   for (int i = 0; i < 10; i++) {

@@ -30,8 +30,8 @@ void publish(EngineLink& link, Snapshot snapshot) {
   link.snapshots.publish(spare);
 }
 
-struct Desk {
-  explicit Desk(const std::string& more = ",streams=none")
+struct NetworkDesk {
+  explicit NetworkDesk(const std::string& more = ",streams=none")
       : network(engine.link, options_to(target, more), kTestOffsets) {
     const Result<void> started = network.start();
     EXPECT_TRUE(started.ok()) << (started.ok() ? "" : started.error());
@@ -55,7 +55,7 @@ bool buffer_granted() {
 }
 
 TEST(Network, MessageArrivesWithItsSender) {
-  Desk desk;
+  NetworkDesk desk;
   desk.client.send(desk.end, Bytes().text("/physics/part/mass").text(",ssf").text("arm").text("tip").f(0.25f).str());
   ASSERT_TRUE(desk.engine.wait_for(1));
   const Command& c = desk.engine.commands.at(0);
@@ -67,7 +67,7 @@ TEST(Network, MessageArrivesWithItsSender) {
 
 // as fast as a client can; as many as every kernel keeps, and ten thousand where the buffer is granted
 TEST(Network, BurstWithoutLoss) {
-  Desk desk;
+  NetworkDesk desk;
   const std::uint32_t count = buffer_granted() ? 10000 : 2000;
   for (std::uint32_t i = 0; i < count; i++) {
     desk.client.send(desk.end, numbered(i));
@@ -88,7 +88,7 @@ TEST(Network, BurstWithoutLoss) {
 
 TEST(Network, BadDatagramsInBetween) {
   log_to_stderr(false);
-  Desk desk;
+  NetworkDesk desk;
   std::uint64_t bad = 0;
   for (const BadPacket& packet : bad_packets()) {
     if (packet.bytes.size() > 65507) continue;  // UDP does not carry it
@@ -102,7 +102,7 @@ TEST(Network, BadDatagramsInBetween) {
 }
 
 TEST(Network, PingIsAnsweredFromTheNewestSnapshot) {
-  Desk desk;
+  NetworkDesk desk;
   const std::string ping = Bytes().text("/ping").str();
   Endpoint from;
   desk.client.send(desk.end, ping);
@@ -117,7 +117,7 @@ TEST(Network, PingIsAnsweredFromTheNewestSnapshot) {
 }
 
 TEST(Network, EnginesAnswersGoOut) {
-  Desk desk;
+  NetworkDesk desk;
   desk.client.send(desk.end, numbered(1));
   ASSERT_TRUE(desk.engine.wait_for(1));
   const Origin origin = desk.engine.commands[0].origin;
@@ -132,7 +132,7 @@ TEST(Network, EnginesAnswersGoOut) {
 
 // a bundle dated 50 ms ahead comes, and not before its time
 TEST(Network, HeldBundleComes) {
-  Desk desk;
+  NetworkDesk desk;
   const NetClock clock;
   const std::uint64_t when = clock.ntp() + (std::uint64_t{1} << 32) / 20;
   desk.client.send(desk.end, bundle(when, {numbered(2)}));
@@ -144,7 +144,7 @@ TEST(Network, HeldBundleComes) {
 }
 
 TEST(Network, StreamsFrameAfterFrame) {
-  Desk desk(",rate=1000,streams=pos");
+  NetworkDesk desk(",rate=1000,streams=pos");
   const Snapshot s = test_world({{"arm", 2}});
   publish(desk.engine.link, s);
   for (int i = 0; i < 20; i++) {

@@ -47,7 +47,7 @@ namespace {
 
 using namespace osc_test;
 
-OscOptions options_to(std::vector<std::uint16_t> ports, const std::string& more) {
+OscOptions options_to_ports(std::vector<std::uint16_t> ports, const std::string& more) {
   OscOptions options;
   options.in = *parse_osc_in("0");
   options.out.emplace();
@@ -83,7 +83,7 @@ TEST(Outage, ANetworkThatGoesAwayAndComesBack) {
   FakeEngine engine;
   const Client target, player;
   const std::uint16_t port = target.end().port;
-  Network network(engine.link, options_to({port}, ",rate=1000,streams=pos"), kTestOffsets);
+  Network network(engine.link, options_to_ports({port}, ",rate=1000,streams=pos"), kTestOffsets);
   publish_world(engine.link);
   ASSERT_TRUE(network.start().ok());
   ASSERT_TRUE(target.receive());
@@ -119,7 +119,8 @@ TEST(Outage, ATargetThatRefusesIsSaidOnceAndServedWhenItListens) {
     const Client gone;
     refuser = gone.end();
   }
-  Network network(engine.link, options_to({refuser.port, innocent.end().port}, ",rate=500,streams=pos"), kTestOffsets);
+  Network network(engine.link, options_to_ports({refuser.port, innocent.end().port}, ",rate=500,streams=pos"),
+                  kTestOffsets);
   publish_world(engine.link);
   ASSERT_TRUE(network.start().ok());
   ASSERT_TRUE(until([&] { return engine.link.counters.unsent >= 10; }));
@@ -171,7 +172,7 @@ TEST(Outage, ATakenPortIsHadWhenItIsFree) {
   FakeEngine engine;
   auto holder = std::make_unique<Client>();
   const Endpoint wanted = holder->end();
-  OscOptions options = options_to({}, "");
+  OscOptions options = options_to_ports({}, "");
   options.in = {{"127.0.0.1", wanted.port}};
   options.optional = true;
   TurnedClock hand;

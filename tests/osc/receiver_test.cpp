@@ -19,8 +19,8 @@ using namespace osc_test;
 constexpr Endpoint kFrom{0xc0a80107u, 5000};  // 192.168.1.7
 
 // a receiver without sockets: datagrams are handed to it
-struct Desk {
-  explicit Desk(std::vector<Cidr> allow = {})
+struct ReceiverDesk {
+  explicit ReceiverDesk(std::vector<Cidr> allow = {})
       : receiver(
             engine.link, std::move(allow),
             {[this](const Outgoing& out) { errors.push_back(out); }, [this](const Origin& o) { pongs.push_back(o); }},
@@ -51,7 +51,7 @@ struct Desk {
 
 TEST(Receiver, MalformedOnlyCounts) {
   log_to_stderr(false);
-  Desk desk;
+  ReceiverDesk desk;
   std::uint64_t bad = 0;
   for (const BadPacket& packet : bad_packets()) {
     desk.take(packet.bytes);
@@ -69,7 +69,7 @@ TEST(Receiver, MalformedOnlyCounts) {
 
 TEST(Receiver, KnownBadPacketsOnlyCount) {
   log_to_stderr(false);
-  Desk desk;
+  ReceiverDesk desk;
   std::uint64_t files = 0;
   std::uint64_t whole = 0;
   std::error_code none;
@@ -88,7 +88,7 @@ TEST(Receiver, KnownBadPacketsOnlyCount) {
 // a thousand bad datagrams within a minute are one line in the log; a minute later there is another, with their number
 TEST(Receiver, MalformedIsSaidOnceAMinute) {
   log_to_stderr(false);
-  Desk desk;
+  ReceiverDesk desk;
   const std::uint64_t before = log_count(LogLevel::warning);
   for (int i = 0; i < 1000; i++) desk.take("x");
   EXPECT_EQ(log_count(LogLevel::warning), before + 1);
@@ -100,7 +100,7 @@ TEST(Receiver, MalformedIsSaidOnceAMinute) {
 }
 
 TEST(Receiver, OneDatagramIsOneCommand) {
-  Desk desk;
+  ReceiverDesk desk;
   desk.take(bundle(1, {numbered(1), bundle(1, {numbered(2)}), numbered(3)}));
   desk.take(numbered(4));
   desk.engine.collect();
@@ -114,7 +114,7 @@ TEST(Receiver, OneDatagramIsOneCommand) {
 }
 
 TEST(Receiver, PingsAreAnsweredHere) {
-  Desk desk;
+  ReceiverDesk desk;
   const std::string ping = Bytes().text("/ping").text(",").str();
   desk.take(ping);
   desk.take(bundle(1, {numbered(1), ping, ping}));
@@ -126,7 +126,7 @@ TEST(Receiver, PingsAreAnsweredHere) {
 }
 
 TEST(Receiver, RefusedTagsAreAnswered) {
-  Desk desk;
+  ReceiverDesk desk;
   desk.take(bundle(1, {numbered(1), Bytes().text("/b").text(",b").u32(0).str()}));
   ASSERT_EQ(desk.errors.size(), 1u);
   EXPECT_EQ(desk.errors[0].to, Outgoing::To::error);
@@ -140,7 +140,7 @@ TEST(Receiver, RefusedTagsAreAnswered) {
 
 TEST(Receiver, AllowListIsAskedBeforeAnythingIsRead) {
   log_to_stderr(false);
-  Desk desk({{0xc0a80100u, 24}, {0x0a000001u, 32}});
+  ReceiverDesk desk({{0xc0a80100u, 24}, {0x0a000001u, 32}});
   desk.take(numbered(1), {0xc0a801ffu, 1});
   desk.take(numbered(2), {0xc0a80201u, 1});
   desk.take(numbered(3), {0x0a000001u, 1});
@@ -154,7 +154,7 @@ TEST(Receiver, AllowListIsAskedBeforeAnythingIsRead) {
 
 TEST(Receiver, TimeTagsInOrder) {
   log_to_stderr(false);
-  Desk desk;
+  ReceiverDesk desk;
   constexpr std::uint64_t kSecond = std::uint64_t{1} << 32;
   const std::uint64_t now = desk.hand.ntp;
   desk.take(bundle(now + 2 * kSecond, {numbered(4), numbered(5)}));
@@ -176,7 +176,7 @@ TEST(Receiver, TimeTagsInOrder) {
 // the inbox holds so many commands; what comes on top is dropped and counted, in messages
 TEST(Receiver, FullInboxCountsWhatItDrops) {
   log_to_stderr(false);
-  Desk desk;
+  ReceiverDesk desk;
   for (std::size_t i = 0; i < EngineLink::kMostCommands; i++) desk.take(numbered(1));
   EXPECT_EQ(desk.engine.link.counters.dropped, 0u);
   desk.take(bundle(1, {numbered(2), numbered(2), numbered(2)}));
@@ -188,7 +188,7 @@ TEST(Receiver, FullInboxCountsWhatItDrops) {
 }
 
 TEST(Receiver, KeepsOpenWhatDidNotChange) {
-  Desk desk;
+  ReceiverDesk desk;
   const ListenAddress any{"127.0.0.1", 0};
   ASSERT_TRUE(desk.receiver.listen({any}).empty());
   const Endpoint first = desk.receiver.bound().at(0);
@@ -205,7 +205,7 @@ TEST(Receiver, KeepsOpenWhatDidNotChange) {
 }
 
 TEST(Receiver, TakenPortIsSaidWithItsCure) {
-  Desk desk;
+  ReceiverDesk desk;
   const Client holder;
   const std::uint16_t port = holder.end().port;
   const auto faults = desk.receiver.listen({{"127.0.0.1", port}});
@@ -219,7 +219,7 @@ TEST(Receiver, TakenPortIsSaidWithItsCure) {
 }
 
 TEST(Receiver, KnowsBySocketWhoAsked) {
-  Desk desk;
+  ReceiverDesk desk;
   ASSERT_TRUE(desk.receiver.listen({{"127.0.0.1", 0}, {"127.0.0.2", 0}}).empty());
   const std::vector<int> fds = desk.receiver.descriptors();
   const Client client;
@@ -237,7 +237,7 @@ TEST(Receiver, KnowsBySocketWhoAsked) {
 // the kernel drops what does not fit into the socket's buffer, and we count as many as were lost
 TEST(Receiver, KernelDropsAreCounted) {
   log_to_stderr(false);
-  Desk desk;
+  ReceiverDesk desk;
   ASSERT_TRUE(desk.receiver.listen({{"127.0.0.1", 0}}).empty());
   const int fd = desk.receiver.descriptors().at(0);
   const int small = 4096;

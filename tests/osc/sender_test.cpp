@@ -23,8 +23,8 @@ int waiting(const Client& client) {
   return count;
 }
 
-struct Desk {
-  Desk() {
+struct SenderDesk {
+  SenderDesk() {
     EXPECT_TRUE(sender.open().ok());
     StreamTarget plain;
     StreamTarget with_errors;
@@ -41,7 +41,7 @@ struct Desk {
 };
 
 TEST(Sender, AnswersGoToTheAsker) {
-  Desk desk;
+  SenderDesk desk;
   desk.sender.send({Outgoing::To::sender, origin_of(desk.asker), {"/list/bodies", {Arg::of("arm1"), Arg::of("arm2")}}});
   EXPECT_EQ(desk.asker.receive(), Bytes().text("/list/bodies").text(",ss").text("arm1").text("arm2").str());
   desk.sender.pong(origin_of(desk.asker), 12, 0.5);
@@ -53,7 +53,7 @@ TEST(Sender, AnswersGoToTheAsker) {
 }
 
 TEST(Sender, AnswersComeFromTheSocketThatWasAsked) {
-  Desk desk;
+  SenderDesk desk;
   const Result<Socket> listening = open_udp({0x7f000001, 0});
   ASSERT_TRUE(listening.ok());
   desk.reply_fd = listening->fd();
@@ -67,7 +67,7 @@ TEST(Sender, AnswersComeFromTheSocketThatWasAsked) {
 }
 
 TEST(Sender, SceneMessagesGoToEveryTarget) {
-  Desk desk;
+  SenderDesk desk;
   desk.sender.send({Outgoing::To::targets, {}, {"/pulse", {Arg::of(2.0), Arg::of(true)}}});
   const std::string expected = Bytes().text("/pulse").text(",fi").f(2).u32(1).str();
   EXPECT_EQ(desk.target.receive(), expected);
@@ -78,7 +78,7 @@ TEST(Sender, SceneMessagesGoToEveryTarget) {
 }
 
 TEST(Sender, ErrorsGoToTheAskerAndToWhoWantsThem) {
-  Desk desk;
+  SenderDesk desk;
   desk.sender.send({Outgoing::To::error, origin_of(desk.asker), error_about("/physics/part/mas")});
   const std::string expected = Bytes().text("/error").text(",ss").text("/physics/part/mas").text("wrong").str();
   EXPECT_EQ(desk.asker.receive(), expected);
@@ -87,7 +87,7 @@ TEST(Sender, ErrorsGoToTheAskerAndToWhoWantsThem) {
 }
 
 TEST(Sender, TenErrorsASecondPerSender) {
-  Desk desk;
+  SenderDesk desk;
   const auto err = [&](const Client& who) {
     for (int i = 0; i < 100; i++) desk.sender.send({Outgoing::To::error, origin_of(who), error_about("/x")});
   };
@@ -105,7 +105,7 @@ TEST(Sender, TenErrorsASecondPerSender) {
 }
 
 TEST(Sender, AnswersAndStreamsAreNeverAnswered) {
-  Desk desk;
+  SenderDesk desk;
   for (const char* address :
        {"/error", "/pong", "/physics/joint/pos", "/physics/joint/rot", "/physics/joint/relrot", "/physics/joint/relpos",
         "/physics/contact", "/transport/state", "/script/error", "/script/ok"}) {
@@ -118,7 +118,7 @@ TEST(Sender, AnswersAndStreamsAreNeverAnswered) {
 
 TEST(Sender, WhatTheSystemDoesNotTakeIsCounted) {
   log_to_stderr(false);
-  Desk desk;
+  SenderDesk desk;
   // no datagram goes to port 0
   StreamTarget wish;
   desk.sender.set_targets({{wish, {0x7f000001, 0}}});
@@ -129,14 +129,14 @@ TEST(Sender, WhatTheSystemDoesNotTakeIsCounted) {
 }
 
 TEST(Sender, NoAddressNoAnswer) {
-  Desk desk;
+  SenderDesk desk;
   desk.sender.send({Outgoing::To::sender, {Hand::panel, 0, 0}, {"/a", {}}});
   EXPECT_EQ(desk.counters.sent, 0u);
 }
 
 TEST(Sender, TooLargeIsSaidAndNotSent) {
   log_to_stderr(false);
-  Desk desk;
+  SenderDesk desk;
   const std::uint64_t before = log_count(LogLevel::warning);
   Message m{"/large", std::vector<Arg>(20000, Arg::of(1.0))};
   desk.sender.send({Outgoing::To::targets, {}, m});

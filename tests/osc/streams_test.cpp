@@ -12,8 +12,8 @@ namespace {
 
 using namespace osc_test;
 
-struct Desk {
-  Desk() {
+struct StreamsDesk {
+  StreamsDesk() {
     auto snapshot = engine.link.snapshots.spare();
     *snapshot = test_world({{"arm", 1}});
     engine.link.snapshots.publish(snapshot);
@@ -40,7 +40,7 @@ struct Desk {
 };
 
 TEST(Streams, OneFrameAPeriodWithoutDrift) {
-  Desk desk;
+  StreamsDesk desk;
   desk.streams.set_targets({desk.target(desk.a, 60)});
   EXPECT_EQ(desk.streams.wait(), 0) << "the first frame comes at once";
   const std::int64_t begin = desk.hand.ns;
@@ -55,7 +55,7 @@ TEST(Streams, OneFrameAPeriodWithoutDrift) {
 }
 
 TEST(Streams, EarlySendsNothing) {
-  Desk desk;
+  StreamsDesk desk;
   desk.streams.set_targets({desk.target(desk.a, 10)});
   desk.streams.send_due(desk.sender.fd());
   desk.hand.turn(0.0999);
@@ -68,7 +68,7 @@ TEST(Streams, EarlySendsNothing) {
 
 // the machine slept for two and a half periods: one frame now, and the beat as before
 TEST(Streams, MissedFramesAreLeftOut) {
-  Desk desk;
+  StreamsDesk desk;
   desk.streams.set_targets({desk.target(desk.a, 10)});
   desk.streams.send_due(desk.sender.fd());
   desk.hand.turn(0.25);
@@ -78,7 +78,7 @@ TEST(Streams, MissedFramesAreLeftOut) {
 }
 
 TEST(Streams, EachTargetHasItsRate) {
-  Desk desk;
+  StreamsDesk desk;
   desk.streams.set_targets({desk.target(desk.a, 100), desk.target(desk.b, 25)});
   for (int i = 0; i <= 100; i++) {
     desk.streams.send_due(desk.sender.fd());
@@ -93,7 +93,7 @@ TEST(Streams, EachTargetHasItsRate) {
 }
 
 TEST(Streams, OldTargetsKeepTheirBeat) {
-  Desk desk;
+  StreamsDesk desk;
   desk.streams.set_targets({desk.target(desk.a, 10)});
   desk.streams.send_due(desk.sender.fd());
   desk.hand.turn(0.04);
@@ -107,7 +107,7 @@ TEST(Streams, OldTargetsKeepTheirBeat) {
 }
 
 TEST(Streams, TargetsWithoutStreamsCostNothing) {
-  Desk desk;
+  StreamsDesk desk;
   Target t = desk.target(desk.a, 10);
   t.wish.pos = false;
   desk.streams.set_targets({t});

@@ -85,7 +85,7 @@ TEST(BehaviorsInTheTree, ShowTheirRowsLikeAnything) {
   EXPECT_EQ(stage.get("/physics/body/two/behavior/swarm")["CONTENTS"]["amount"]["VALUE"], json::array({2.0}));
 }
 
-struct FakeLine : ClientLine {
+struct SortedLine : ClientLine {
   Frames texts;
   Frames values;
   void send(bool text, std::string frame) override { (text ? texts : values).push_back(std::move(frame)); }
@@ -97,7 +97,7 @@ TEST(BehaviorsInTheTree, AreToldOfAsTheyComeGoChangeAndErr) {
   engine_test::Show& show = *stage.show;
   const QueryDoors doors = fake_doors();
   Hall hall(show.link, doors, {});
-  FakeLine line;
+  SortedLine line;
   Client client({Hand::query, 0x7f000001, 5}, line, hall.doors());
   hall.enter(client);
   const auto look = [&] {

@@ -17,7 +17,7 @@ using engine_test::image_of;
 using nlohmann::json;
 using Frames = std::vector<std::string>;
 
-struct FakeLine : ClientLine {
+struct FillingLine : ClientLine {
   Frames frames;
   std::size_t full = 0;
 
@@ -26,15 +26,15 @@ struct FakeLine : ClientLine {
   Frames take() { return std::exchange(frames, {}); }
 };
 
-struct Stage {
+struct ClientStage {
   engine_test::SceneFile file{engine_test::kEverything};
   engine_test::Show show{file.path()};
   std::vector<std::pair<Origin, std::string>> packets;
   QueryDoors doors = fake_doors(&packets);
-  FakeLine line;
+  FillingLine line;
   Client client{{Hand::query, 0x7f000001, 77}, line, doors};
 
-  Stage() { show.send("/transport/pause"); }
+  ClientStage() { show.send("/transport/pause"); }
   Frames news() {
     client.image(image_of(show), {});
     return line.take();
@@ -46,7 +46,7 @@ std::string command(const std::string& word, const std::string& path) {
 }
 
 TEST(Client, ListensAndIgnores) {
-  Stage stage;
+  ClientStage stage;
   EXPECT_EQ(stage.news(), Frames{});
   EXPECT_TRUE(stage.client.text(command("LISTEN", "/scene/wind")));
   EXPECT_TRUE(stage.client.listens());
@@ -61,7 +61,7 @@ TEST(Client, ListensAndIgnores) {
 }
 
 TEST(Client, ValuesComeAsTheTreeSaysTheyAre) {
-  Stage stage;
+  ClientStage stage;
   for (const char* path : {"/scene/style", "/scene/lively", "/scene/where", "/physics/body/arm/part/base/rotation",
                            "/physics/sim/seed", "/physics/sim/substeps"})
     stage.client.text(command("LISTEN", path));
@@ -71,7 +71,7 @@ TEST(Client, ValuesComeAsTheTreeSaysTheyAre) {
 }
 
 TEST(Client, WhatIsNoCommandIsLeftAlone) {
-  Stage stage;
+  ClientStage stage;
   std::string deep(60000, '[');
   const std::vector<std::string> none = {"",
                                          "{",
@@ -100,7 +100,7 @@ TEST(Client, WhatIsNoCommandIsLeftAlone) {
 }
 
 TEST(Client, PacketsAreHandedOnWithWhoSentThem) {
-  Stage stage;
+  ClientStage stage;
   stage.client.binary("abc");
   stage.client.text(command("LISTEN", "/scene/wind"));
   stage.client.binary("def");
@@ -113,7 +113,7 @@ TEST(Client, PacketsAreHandedOnWithWhoSentThem) {
 }
 
 TEST(Client, WhatItSetsItselfIsNotToldBack) {
-  Stage stage;
+  ClientStage stage;
   stage.client.text(command("LISTEN", "/scene/wind"));
   stage.news();
   Origin self = stage.client.origin();
@@ -125,7 +125,7 @@ TEST(Client, WhatItSetsItselfIsNotToldBack) {
 }
 
 TEST(Client, ASlowOneGetsTheNewestWhenItHasRoom) {
-  Stage stage;
+  ClientStage stage;
   stage.client.text(command("LISTEN", "/scene/wind"));
   stage.news();
   stage.line.full = Client::kRoom;
@@ -138,7 +138,7 @@ TEST(Client, ASlowOneGetsTheNewestWhenItHasRoom) {
 }
 
 TEST(Client, NoticesAndAnswersAreSent) {
-  Stage stage;
+  ClientStage stage;
   const Frames notices = {R"({"COMMAND":"PATH_ADDED","DATA":"/x"})"};
   stage.client.image(image_of(stage.show), notices);
   EXPECT_EQ(stage.line.take(), Frames{"t " + notices[0]});
@@ -147,7 +147,7 @@ TEST(Client, NoticesAndAnswersAreSent) {
 }
 
 TEST(Client, TenErrorsASecond) {
-  Stage stage;
+  ClientStage stage;
   const Outgoing error{Outgoing::To::error, {}, error_message("/a", "b")};
   for (int i = 0; i < 30; i++) stage.client.answer(error, 5.0 + 0.01 * i);
   EXPECT_EQ(stage.line.take().size(), 10u);
@@ -156,7 +156,7 @@ TEST(Client, TenErrorsASecond) {
 }
 
 TEST(Client, TheLogForWhoAsks) {
-  Stage stage;
+  ClientStage stage;
   log_to_stderr(false);
   log_warning("before it came");
   stage.client.log();

@@ -15,21 +15,21 @@ using Frames = std::vector<std::string>;
 double the_time = 100;
 double read_time() { return the_time; }
 
-struct FakeLine : ClientLine {
+struct FrameLine : ClientLine {
   Frames frames;
   void send(bool, std::string frame) override { frames.push_back(std::move(frame)); }
   std::size_t waiting() const override { return 0; }
   Frames take() { return std::exchange(frames, {}); }
 };
 
-struct Stage {
+struct HallStage {
   engine_test::SceneFile file{engine_test::kEverything};
   engine_test::Show show{file.path()};
   QueryDoors doors = fake_doors();
   Hall hall{show.link, doors, {}, &read_time};
   std::vector<HttpAnswer> answers;
 
-  Stage() { show.send("/transport/pause"); }
+  HallStage() { show.send("/transport/pause"); }
   void ask(const std::string& target) {
     HttpRequest request;
     request.method = "GET";
@@ -50,7 +50,7 @@ struct Stage {
 };
 
 TEST(Hall, ARequestWaitsForAnImageOfAfterItCame) {
-  Stage stage;
+  HallStage stage;
   engine_test::image_of(stage.show);
   stage.show.send("/scene/wind", 7);
   stage.ask("/scene/wind?VALUE");
@@ -64,7 +64,7 @@ TEST(Hall, ARequestWaitsForAnImageOfAfterItCame) {
 }
 
 TEST(Hall, WhatNeedsNoTreeIsAnsweredAtOnce) {
-  Stage stage;
+  HallStage stage;
   stage.ask("/?HOST_INFO");
   stage.ask("/?NONSENSE");
   ASSERT_EQ(stage.answers.size(), 2u);
@@ -74,7 +74,7 @@ TEST(Hall, WhatNeedsNoTreeIsAnsweredAtOnce) {
 }
 
 TEST(Hall, PatienceEnds) {
-  Stage stage;
+  HallStage stage;
   stage.ask("/scene/wind?VALUE");
   the_time += Hall::kPatience - 0.01;
   stage.hall.beat();
@@ -93,7 +93,7 @@ TEST(Hall, PatienceEnds) {
 }
 
 TEST(Hall, TooManyWaitingAreTurnedAway) {
-  Stage stage;
+  HallStage stage;
   for (std::size_t i = 0; i < Hall::kMostWaiting; i++) stage.ask("/scene/wind?VALUE");
   EXPECT_TRUE(stage.answers.empty());
   stage.ask("/scene/wind?VALUE");
@@ -104,8 +104,8 @@ TEST(Hall, TooManyWaitingAreTurnedAway) {
 }
 
 TEST(Hall, ClientsHearOnTheBeatAndNotMoreOften) {
-  Stage stage;
-  FakeLine line;
+  HallStage stage;
+  FrameLine line;
   Client client({Hand::query, 1, 1}, line, stage.hall.doors());
   stage.hall.enter(client);
   client.text(R"({"COMMAND":"LISTEN","DATA":"/scene/wind"})");
@@ -128,8 +128,8 @@ TEST(Hall, ClientsHearOnTheBeatAndNotMoreOften) {
 }
 
 TEST(Hall, ThoseWhoOnlyAreThereCostFewImages) {
-  Stage stage;
-  FakeLine line;
+  HallStage stage;
+  FrameLine line;
   Client client({Hand::query, 1, 1}, line, stage.hall.doors());
   stage.hall.enter(client);
   const std::uint64_t asks = stage.show.link.image_asks.load();
@@ -152,8 +152,8 @@ TEST(Hall, ThoseWhoOnlyAreThereCostFewImages) {
 
 // one who asks again and again must not keep the others from their values
 TEST(Hall, HurryingDoesNotPutOffWhatIsOnItsWay) {
-  Stage stage;
-  FakeLine line;
+  HallStage stage;
+  FrameLine line;
   Client client({Hand::query, 1, 1}, line, stage.hall.doors());
   stage.hall.enter(client);
   client.text(R"({"COMMAND":"LISTEN","DATA":"/scene/wind"})");
@@ -167,9 +167,9 @@ TEST(Hall, HurryingDoesNotPutOffWhatIsOnItsWay) {
 }
 
 TEST(Hall, AnswersGoToWhoAsked) {
-  Stage stage;
-  FakeLine one;
-  FakeLine two;
+  HallStage stage;
+  FrameLine one;
+  FrameLine two;
   Client first({Hand::query, 1, 1}, one, stage.hall.doors());
   Client second({Hand::query, 1, 2}, two, stage.hall.doors());
   stage.hall.enter(first);

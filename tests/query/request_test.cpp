@@ -24,7 +24,7 @@ HttpRequest request_for(std::string target, std::string accept = "*/*") {
   return request;
 }
 
-struct Stage {
+struct RequestStage {
   engine_test::SceneFile file{std::string(engine_test::kEverything) + "sim:add_body('a b')\nsim:add_body('c/d')\n"};
   engine_test::Show show{file.path()};
   std::shared_ptr<const Image> image = engine_test::image_of(show);
@@ -37,7 +37,7 @@ struct Stage {
 };
 
 TEST(Request, PathsAndAttributes) {
-  const Stage stage;
+  const RequestStage stage;
   struct Case {
     const char* target;
     int status;
@@ -102,14 +102,14 @@ TEST(Request, PathsAndAttributes) {
 }
 
 TEST(Request, RefusalsSayWhatThereIs) {
-  const Stage stage;
+  const RequestStage stage;
   EXPECT_EQ(stage.get("/scene/wimd").body, "there is no 'wimd' in /scene; did you mean 'wind'?\n");
   EXPECT_EQ(stage.get("/scene/wind?VALUES").body, "there is no attribute 'VALUES'; did you mean 'VALUE'?\n");
   EXPECT_EQ(stage.get("/\x1b[31m").body.find('\x1b'), std::string::npos);
 }
 
 TEST(Request, ContentsAndWords) {
-  const Stage stage;
+  const RequestStage stage;
   const json contents = json::parse(stage.get("/scene?CONTENTS").body);
   EXPECT_EQ(contents.size(), 1u);
   EXPECT_EQ(contents["CONTENTS"]["wind"]["VALUE"], json::array({0}));
@@ -119,7 +119,7 @@ TEST(Request, ContentsAndWords) {
 }
 
 TEST(Request, HostInfo) {
-  const Stage stage;
+  const RequestStage stage;
   for (const char* target : {"/?HOST_INFO", "/scene/wind?HOST_INFO=1", "/nowhere?HOST_INFO"}) {
     const json info = json::parse(stage.get(target).body);
     EXPECT_EQ(info["NAME"].get<std::string>().substr(0, 6), "Limber");
@@ -134,7 +134,7 @@ TEST(Request, HostInfo) {
 }
 
 TEST(Request, ABrowserGetsThePageOthersTheTree) {
-  const Stage stage;
+  const RequestStage stage;
   const HttpAnswer page = stage.get("/", "text/html,application/xhtml+xml,*/*;q=0.8");
   EXPECT_EQ(page.type, "text/html; charset=utf-8");
   EXPECT_NE(page.policy.find("default-src 'none'"), std::string::npos);

@@ -22,20 +22,20 @@ namespace {
 using nlohmann::json;
 
 // an engine that plays, and the server before it; packets of clients are "address number" and set that
-struct Stage {
+struct ServerStage {
   engine_test::SceneFile file{engine_test::kEverything};
   EngineLink link;
   Engine engine{link, options(file.path())};
   QueryServer server{link, doors()};
   std::thread sim;
 
-  explicit Stage(bool plays = true) {
+  explicit ServerStage(bool plays = true) {
     EXPECT_TRUE(engine.start().ok());
     const Result<void> started = server.start({"127.0.0.1", 0});
     EXPECT_TRUE(started.ok()) << (started.ok() ? "" : started.error());
     if (plays) sim = std::thread([this] { engine.run(); });
   }
-  ~Stage() {
+  ~ServerStage() {
     engine.stop();
     if (sim.joinable()) sim.join();
     server.stop();
@@ -63,7 +63,7 @@ struct Stage {
 };
 
 TEST(QueryServer, AnswersHttpOnOneConnectionAgainAndAgain) {
-  const Stage stage;
+  const ServerStage stage;
   WebClient client = stage.client();
   for (int i = 0; i < 3; i++) {
     const Reply value = client.get("/scene/where?VALUE");
@@ -88,7 +88,7 @@ TEST(QueryServer, AnswersHttpOnOneConnectionAgainAndAgain) {
 }
 
 TEST(QueryServer, AWebSocketListensSetsAndIsNotEchoed) {
-  const Stage stage;
+  const ServerStage stage;
   WebClient one = stage.client();
   const Reply upgraded = one.upgrade();
   EXPECT_EQ(upgraded.status, 101);
@@ -129,7 +129,7 @@ class Ticks {
 };
 
 TEST(QueryServer, TellsOfBodiesThatComeAndGo) {
-  Stage stage(false);
+  ServerStage stage(false);
   World& world = stage.engine.world();
   WebClient client = stage.web_socket();
   client.listen("/scene/wind");
@@ -150,7 +150,7 @@ TEST(QueryServer, TellsOfBodiesThatComeAndGo) {
 }
 
 TEST(QueryServer, StrangersGetNothing) {
-  const Stage stage;
+  const ServerStage stage;
   WebClient client = stage.client();
   EXPECT_EQ(client.get("/scene", "Origin: http://evil.example\r\n").status, 403);
   EXPECT_EQ(client.upgrade("Origin: http://evil.example\r\n").status, 403);
@@ -162,7 +162,7 @@ TEST(QueryServer, StrangersGetNothing) {
 }
 
 TEST(QueryServer, GarbageEndsItsOwnConnectionOnly) {
-  const Stage stage;
+  const ServerStage stage;
   WebClient good = stage.web_socket();
   good.listen("/scene/wind");
   EXPECT_EQ(good.receive(2, "/scene/wind").opcode, 2);
@@ -227,7 +227,7 @@ bool is_dropped(const WebClient& client) {
 
 // one that takes nothing is dropped, and holds up nobody meanwhile
 TEST(QueryServer, ASlowClientIsDroppedTheOthersAreServed) {
-  const Stage stage;
+  const ServerStage stage;
   WebClient slow(stage.server.port(), 4096);
   ASSERT_EQ(slow.upgrade().status, 101);
   slow.listen("//*");  // much of it moves all the time
@@ -248,7 +248,7 @@ TEST(QueryServer, ASlowClientIsDroppedTheOthersAreServed) {
 }
 
 TEST(QueryServer, AsManyAsThereAreSeats) {
-  const Stage stage;
+  const ServerStage stage;
   std::vector<WebClient> idle;
   for (int i = 0; i < 256; i++) idle.emplace_back(stage.server.port());
   WebClient late = stage.client();
@@ -267,14 +267,14 @@ TEST(QueryServer, AsManyAsThereAreSeats) {
 }
 
 TEST(QueryServer, AnEngineThatDoesNotTickHoldsUpNobody) {
-  const Stage stage(false);
+  const ServerStage stage(false);
   WebClient client = stage.client();
   EXPECT_EQ(client.get("/?HOST_INFO").status, 200);
   EXPECT_EQ(client.get("/scene/wind?VALUE").status, 503);
 }
 
 TEST(QueryServer, ATakenPortIsSaidWithItsCure) {
-  const Stage stage;
+  const ServerStage stage;
   EngineLink link;
   QueryServer second(link, fake_doors());
   const std::uint16_t port = stage.server.port();

@@ -18,12 +18,12 @@ using engine_test::image_of;
 using engine_test::Show;
 using nlohmann::json;
 
-struct Stage {
+struct TreeStage {
   engine_test::SceneFile file{std::string(engine_test::kEverything) + "sim:add_body('my body')\n"};
   Show show{file.path()};
   std::shared_ptr<const Image> image;
 
-  Stage() {
+  TreeStage() {
     show.ticks(3);
     image = image_of(show);
   }
@@ -54,7 +54,7 @@ std::size_t leaves(const json& node) {
 }
 
 TEST(TreeJson, HoldsEveryRowOfTheCatalogWithItsValue) {
-  Stage stage;
+  TreeStage stage;
   const json root = stage.get("/");
   EXPECT_EQ(root["FULL_PATH"], "/");
   const Store& store = stage.show.engine.store();
@@ -80,7 +80,7 @@ TEST(TreeJson, HoldsEveryRowOfTheCatalogWithItsValue) {
 }
 
 TEST(TreeJson, ValuesOfEachKind) {
-  const Stage stage;
+  const TreeStage stage;
   EXPECT_EQ(stage.get("/scene/style")["VALUE"], json::array({"calm"}));
   EXPECT_EQ(stage.get("/scene/lively")["VALUE"], json::array({true}));
   EXPECT_EQ(stage.get("/scene/where")["VALUE"], json::array({0, 0, 1}));
@@ -92,13 +92,13 @@ TEST(TreeJson, ValuesOfEachKind) {
 }
 
 TEST(TreeJson, NamesAreWrittenAsInAddresses) {
-  const Stage stage;
+  const TreeStage stage;
   EXPECT_EQ(stage.get("/physics/body/my body")["FULL_PATH"], "/physics/body/my%20body");
   EXPECT_TRUE(stage.get("/physics/body")["CONTENTS"].contains("my%20body"));
 }
 
 TEST(TreeJson, DepthLeavesOutWhatLiesDeeper) {
-  const Stage stage;
+  const TreeStage stage;
   EXPECT_EQ(stage.get("/physics", 0), json::parse(R"({"FULL_PATH":"/physics","ACCESS":0,"CONTENTS":{}})"));
   const json one = stage.get("/physics", 1);
   EXPECT_TRUE(one["CONTENTS"].contains("body"));
@@ -135,7 +135,7 @@ TEST(TreeJson, AHugeTreeIsCutByWholeLevels) {
 }
 
 TEST(TreeJson, FindsByWordsOfThePath) {
-  const Stage stage;
+  const TreeStage stage;
   const auto find = [&](const std::string& words, std::size_t limit = 100) {
     return json::parse(find_json(*stage.image, words, limit));
   };
@@ -153,7 +153,7 @@ TEST(TreeJson, FindsByWordsOfThePath) {
 }
 
 TEST(TreeJson, ValueAlone) {
-  const Stage stage;
+  const TreeStage stage;
   const auto value = [&](const char* path) { return place_value_json(*stage.image, *stage.image->tree->find(path)); };
   EXPECT_EQ(value("/scene/where"), "[0,0,1]");
   EXPECT_EQ(value("/transport/play"), "");

@@ -9,11 +9,11 @@
 namespace limber {
 namespace {
 
-constexpr double kQuick = 5 * kBudgetScale;
+constexpr double kUndoQuick = 5 * kBudgetScale;
 
-SceneOptions quick() {
+SceneOptions undo_quick() {
   SceneOptions options;
-  options.limits.call_ms = kQuick;
+  options.limits.call_ms = kUndoQuick;
   options.limits.memory = std::size_t{16} << 20u;
   return options;
 }
@@ -42,7 +42,7 @@ return behavior {
   end,
 }
 )";
-constexpr const char* kScene = R"(
+constexpr const char* kUndoScene = R"(
 sim.gravity = vec3()
 local shape = sim:add_sphere_shape("ball", 0.1)
 a, b = sim:add_body("a"), sim:add_body("b")
@@ -63,13 +63,13 @@ struct Left {
 
 // the scene with more in it, and a behaviour "guest" of the body a with this step
 Left play(const std::string& more, const std::string& guest, std::size_t faults) {
-  Stage stage(quick());
+  Stage stage(undo_quick());
   std::size_t said = 0;
   stage.world.behaviors().on_fault([&](const Behavior&) { said++; });
   stage.write("behaviors_lua/drawing.lua", kDrawing);
   stage.write("behaviors_lua/near.lua", kNear);
   stage.write("behaviors_lua/guest.lua", "return behavior { step = function(self)\n" + guest + "\nend }");
-  EXPECT_EQ(stage.play(kScene + std::string("a:add_behavior('guest', 'guest')\n") + more, 40), "");
+  EXPECT_EQ(stage.play(kUndoScene + std::string("a:add_behavior('guest', 'guest')\n") + more, 40), "");
   EXPECT_EQ(stage.host.faults.size() + said, faults) << more << guest;
   Left left{stage.scene.state_hash(stage.world.state_hash()), stage.host.printed, stage.world.behaviors().order()};
   stage.world.behaviors().on_fault({});

@@ -6,7 +6,7 @@
 namespace limber {
 namespace {
 
-constexpr const char* kArm = R"(
+constexpr const char* kBehavingArm = R"(
 local shape = sim:add_sphere_shape("ball", 0.1)
 local arm = sim:add_body("arm")
 for i, name in ipairs { "base", "mid", "tip" } do arm:add_part(name, shape, { position = vec3(i, 0, 0) }) end
@@ -15,9 +15,9 @@ sim.gravity = vec3(0, 0, 0)
 )";
 
 std::string value(const std::string& expression, const std::string& before = "") {
-  return value_of(expression, std::string(kArm) + before);
+  return value_of(expression, std::string(kBehavingArm) + before);
 }
-std::string error(const std::string& text) { return error_of(std::string(kArm) + text); }
+std::string error(const std::string& text) { return error_of(std::string(kBehavingArm) + text); }
 
 TEST(LuaBehaviors, AHandleHasParametersAndWhatItIs) {
   const std::string before = R"(local b = arm:add_behavior("RandomForceBehavior", "wind",
@@ -113,7 +113,7 @@ TEST(LuaBehaviors, AGroupWritesToEveryMember) {
 
 TEST(LuaBehaviors, ARemovedOneIsGone) {
   Stage stage;
-  EXPECT_EQ(stage.play(std::string(kArm) + R"(
+  EXPECT_EQ(stage.play(std::string(kBehavingArm) + R"(
     local b = arm:add_behavior("force", "push", { amp = 6, parts = "tip" })
     local g = sim:add_group_behavior("cohesion", "swarm")
     sim:on_start(function()

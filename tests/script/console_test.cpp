@@ -11,7 +11,7 @@ namespace {
 using Kind = Evaluation::Kind;
 
 /// A scene with a body "arm": a base that stands, a tip, a joint and motor "hinge".
-constexpr const char* kArm = R"(
+constexpr const char* kConsoleArm = R"(
 local ball = sim:add_sphere_shape("ball", 0.1)
 arm = sim:add_body("arm")
 arm:add_part("base", ball, { mass = 0 })
@@ -35,7 +35,7 @@ struct Console : testing::Test {
   explicit Console(const std::string& more = "") {
     stage.write("behaviors_lua/sway.lua", kSway);
     stage.write("behaviors_lua/herd.lua", kHerd);
-    EXPECT_EQ(stage.play(kArm + more), "");
+    EXPECT_EQ(stage.play(kConsoleArm + more), "");
   }
 
   /// "kind: text" of what comes of it.

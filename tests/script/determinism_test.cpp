@@ -8,7 +8,7 @@
 namespace limber {
 namespace {
 
-constexpr const char* kScene = R"(
+constexpr const char* kRepeatedScene = R"(
 sim:add_body("floor"):add_part("floor", sim:add_plane_shape("floor"))
 local box = sim:add_box_shape("box", { 0.2, 0.3, 0.4 })
 local bodies = {}
@@ -35,7 +35,7 @@ end)
 
 std::uint64_t hash_of(bool fresh, int ticks, const std::string& extra = "") {
   Stage stage({}, fresh);
-  EXPECT_EQ(stage.play(kScene + extra, ticks), "");
+  EXPECT_EQ(stage.play(kRepeatedScene + extra, ticks), "");
   EXPECT_TRUE(stage.host.faults.empty()) << stage.host.faults[0].text;
   return stage.scene.state_hash(stage.world.state_hash());
 }

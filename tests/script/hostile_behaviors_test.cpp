@@ -1,5 +1,5 @@
-// Hostile behaviours: whatever one does, it alone is suspended, what it had written is taken back, and its neighbours
-// move as if it had been switched off in that tick.
+// HostileCase behaviours: whatever one does, it alone is suspended, what it had written is taken back, and its
+// neighbours move as if it had been switched off in that tick.
 #include <gtest/gtest.h>
 
 #include "behavior_stage.h"
@@ -7,16 +7,16 @@
 namespace limber {
 namespace {
 
-struct Hostile {
+struct HostileCase {
   const char* name;
   const char* step;  // at tick 30; before, it pushes its own body
   const char* said;  // the error has this
   int line = 4;
 };
 
-std::ostream& operator<<(std::ostream& out, const Hostile& hostile) { return out << hostile.name; }
+std::ostream& operator<<(std::ostream& out, const HostileCase& hostile) { return out << hostile.name; }
 
-constexpr Hostile kHostile[] = {
+constexpr HostileCase kHostile[] = {
     {"Errs", "local x = nil + 1", "attempt to perform arithmetic on a nil value"},
     {"ThrowsATable", "error({})", "an error that is no text but a table"},
     {"LoopsForEver", "while true do end", " ms of computing; look for a loop without an end"},
@@ -73,7 +73,7 @@ for _, name in ipairs { "before", "behind" } do sim:body(name):behavior("bad").h
 )";
 }
 
-std::string file(const Hostile& hostile) {
+std::string file(const HostileCase& hostile) {
   return "return behavior { group = true, params = { { 'push', 1, unit = 'ms' }, { 'hostile', true } }, step = "
          "function(self)\n"
          "if self.hostile and sim.tick >= 30 then\n"
@@ -88,10 +88,10 @@ std::uint64_t hash_of(const Stage& stage, const char* body) {
   return stage.world.find_body(body)->state_hash(hash_bytes("test"));
 }
 
-class HostileBehaviors : public ::testing::TestWithParam<Hostile> {};
+class HostileBehaviors : public ::testing::TestWithParam<HostileCase> {};
 
 TEST_P(HostileBehaviors, AreSuspendedAloneAndLeaveNoTrace) {
-  const Hostile& hostile = GetParam();
+  const HostileCase& hostile = GetParam();
   SceneOptions options;
   options.limits.call_ms = 4 * kBudgetScale;
   options.limits.memory = std::size_t{24} << 20u;
@@ -146,7 +146,7 @@ void mend(BehaviorStage& stage, ScriptHost& host, std::unique_ptr<Scene>& beside
 }
 
 TEST_P(HostileBehaviors, AreRevivedByAMendedFile) {
-  const Hostile& hostile = GetParam();
+  const HostileCase& hostile = GetParam();
   SceneOptions options;
   options.limits.call_ms = 4 * kBudgetScale;
   options.limits.memory = std::size_t{24} << 20u;

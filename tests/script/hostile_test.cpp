@@ -20,7 +20,7 @@ namespace {
 namespace fs = std::filesystem;
 
 // Two bodies that move, one of them driven; the guest comes in between, and prints go to nobody's harm.
-constexpr const char* kScene = R"(
+constexpr const char* kHealthyScene = R"(
 sim:add_body("floor"):add_part("floor", sim:add_plane_shape("floor"))
 local ball = sim:add_sphere_shape("ball", 0.2)
 for i, name in ipairs { "healthy", "victim" } do
@@ -89,20 +89,20 @@ Head head_of(const std::string& text) {
 }
 
 // how the healthy body moves, tick by tick
-struct Trajectory {
+struct Track {
   std::vector<std::uint64_t> hashes;
   std::vector<RecordingHost::Fault> faults;
   std::size_t sent = 0;
   std::size_t printed = 0;
 };
 
-Trajectory play(const std::string& guest, const Head& head) {
+Track play(const std::string& guest, const Head& head) {
   SceneOptions options;
   options.limits = head.limits;
   Stage stage(options);
   stage.write("scripts/lib/guest.lua", guest);
-  EXPECT_EQ(stage.play(kScene), "");
-  Trajectory trajectory;
+  EXPECT_EQ(stage.play(kHealthyScene), "");
+  Track trajectory;
   for (int tick = 0; tick < 600; tick++) {
     if (tick % 100 == 50 && tick / 100 < head.messages) stage.scene.message({"/hit", {}}, {});
     stage.tick();
@@ -129,17 +129,17 @@ std::string text_of_file(const fs::path& path) {
   return {std::istreambuf_iterator<char>(in), {}};
 }
 
-const Trajectory& alone() {
-  static const Trajectory trajectory = play("-- nobody", head_of(""));
+const Track& alone() {
+  static const Track trajectory = play("-- nobody", head_of(""));
   return trajectory;
 }
 
-class Hostile : public testing::TestWithParam<fs::path> {};
+class HostileScript : public testing::TestWithParam<fs::path> {};
 
-TEST_P(Hostile, HarmsNobody) {
+TEST_P(HostileScript, HarmsNobody) {
   const std::string text = text_of_file(GetParam());
   const Head head = head_of(text);
-  const Trajectory trajectory = play(text, head);
+  const Track trajectory = play(text, head);
   const auto [mine, theirs] = std::ranges::mismatch(trajectory.hashes, alone().hashes);
   EXPECT_TRUE(mine == trajectory.hashes.end() && theirs == alone().hashes.end())
       << "the healthy body differs from tick " << mine - trajectory.hashes.begin();
@@ -164,7 +164,7 @@ TEST_P(Hostile, HarmsNobody) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Each, Hostile, testing::ValuesIn(hostile_files()),
+INSTANTIATE_TEST_SUITE_P(Each, HostileScript, testing::ValuesIn(hostile_files()),
                          [](const auto& file) { return file.param.stem().string(); });
 
 TEST(HostileSuite, IsLargeEnough) {

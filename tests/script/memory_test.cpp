@@ -10,10 +10,10 @@
 namespace limber {
 namespace {
 
-constexpr std::size_t kMegabyte = std::size_t{1} << 20u;
+constexpr std::size_t kMiB = std::size_t{1} << 20u;
 
 struct MemoryTest : testing::Test {
-  explicit MemoryTest(std::size_t cap = 8 * kMegabyte)
+  explicit MemoryTest(std::size_t cap = 8 * kMiB)
       : memory(
             cap, [](void* self) { static_cast<MemoryTest*>(self)->full++; }, this) {
     memory.attach(state);
@@ -48,45 +48,45 @@ TEST_F(MemoryTest, CountsWhatLuaCounts) {
            static_cast<std::size_t>(lua_gc(state, LUA_GCCOUNTB, 0));
   };
   EXPECT_EQ(memory.used(), told());
-  ASSERT_TRUE(hold(3 * kMegabyte));
+  ASSERT_TRUE(hold(3 * kMiB));
   EXPECT_EQ(memory.used(), told());
-  EXPECT_GT(memory.used(), 3 * kMegabyte);
+  EXPECT_GT(memory.used(), 3 * kMiB);
   lua_settop(state, 0);
   lua_gc(state, LUA_GCCOLLECT, 0);
   EXPECT_EQ(memory.used(), told());
-  EXPECT_LT(memory.used(), kMegabyte);
+  EXPECT_LT(memory.used(), kMiB);
 }
 
 TEST_F(MemoryTest, SpeaksOnlyInACall) {
-  ASSERT_TRUE(hold(10 * kMegabyte));
+  ASSERT_TRUE(hold(10 * kMiB));
   EXPECT_EQ(full, 0);
   memory.begin_call();
-  ASSERT_TRUE(hold(2 * kMegabyte));
+  ASSERT_TRUE(hold(2 * kMiB));
   EXPECT_GT(full, 0);
   memory.end_call();
   full = 0;
-  ASSERT_TRUE(hold(2 * kMegabyte));
+  ASSERT_TRUE(hold(2 * kMiB));
   EXPECT_EQ(full, 0);
 }
 
 TEST_F(MemoryTest, SpeaksAgainWhileItGrows) {
   memory.begin_call();
-  ASSERT_TRUE(hold(7 * kMegabyte));
+  ASSERT_TRUE(hold(7 * kMiB));
   EXPECT_EQ(full, 0);
-  for (int i = 0; i < 4; i++) ASSERT_TRUE(hold(kMegabyte));
+  for (int i = 0; i < 4; i++) ASSERT_TRUE(hold(kMiB));
   EXPECT_GE(full, 2);
 }
 
 TEST_F(MemoryTest, WhoTakesLittleGoesOnWhenOthersFilledIt) {
-  ASSERT_TRUE(hold(10 * kMegabyte));  // a quarter beyond: three quarters of a megabyte are left to a call
+  ASSERT_TRUE(hold(10 * kMiB));  // a quarter beyond: three quarters of a megabyte are left to a call
   memory.begin_call();
-  ASSERT_TRUE(hold(kMegabyte / 2));
+  ASSERT_TRUE(hold(kMiB / 2));
   EXPECT_EQ(full, 0);
-  ASSERT_TRUE(hold(kMegabyte / 2));
+  ASSERT_TRUE(hold(kMiB / 2));
   EXPECT_EQ(full, 1);
   memory.end_call();
   full = 0;
-  ASSERT_TRUE(hold(15 * kMegabyte));  // at three times the cap nothing is
+  ASSERT_TRUE(hold(15 * kMiB));  // at three times the cap nothing is
   memory.begin_call();
   ASSERT_TRUE(hold(100));
   EXPECT_EQ(full, 1);
@@ -94,12 +94,12 @@ TEST_F(MemoryTest, WhoTakesLittleGoesOnWhenOthersFilledIt) {
 
 TEST_F(MemoryTest, LargePiecesStopAndImpossibleOnesAreRefused) {
   memory.begin_call();
-  EXPECT_TRUE(hold(17 * kMegabyte));
+  EXPECT_TRUE(hold(17 * kMiB));
   EXPECT_EQ(full, 1);
-  EXPECT_FALSE(hold(33 * kMegabyte));
+  EXPECT_FALSE(hold(33 * kMiB));
   EXPECT_STREQ(lua_tostring(state, -1), "not enough memory");
   memory.end_call();
-  EXPECT_TRUE(hold(33 * kMegabyte));  // ours is never refused
+  EXPECT_TRUE(hold(33 * kMiB));  // ours is never refused
 }
 
 }  // namespace

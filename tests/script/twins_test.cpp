@@ -76,7 +76,7 @@ const std::vector<Twin>& twins() {
 }
 
 // Three bodies of four free parts each, that drift and turn, and two arms: of servos, and of springs on one joint.
-constexpr const char* kScene = R"(
+constexpr const char* kTwinScene = R"(
 sim.gravity = vec3()
 local shapes = { sim:add_box_shape("brick", vec3(0.2, 0.1, 0.05)), sim:add_sphere_shape("ball", 0.06) }
 for i = 1, 3 do
@@ -111,7 +111,7 @@ Trajectory played(const std::string& type, const std::string& opts, bool group) 
       group ? "local function attach() end\n"
             : "local function attach(body) body:add_behavior('" + type + "', 'it', { " + opts + " }) end\n";
   const std::string all = group ? "\nsim:add_group_behavior('" + type + "', 'it', { " + opts + " })" : "";
-  const std::string fault = stage.play(attach + kScene + all);
+  const std::string fault = stage.play(attach + kTwinScene + all);
   EXPECT_EQ(fault, "");
   Trajectory places;
   for (int i = 0; fault.empty() && i < 60; i++) {

@@ -49,7 +49,35 @@ TEST_F(Picture, IsReadInAScene) {
             "true\ttrue\tvisuals.camera");
 }
 
+TEST_F(Picture, TheCameraGlidesAndGoesWithAThing) {
+  ASSERT_EQ(stage.play(R"(
+    local ball = sim:add_body("ball")
+    ball:add_part("ball", sim:add_sphere_shape("ball", 0.1), { position = vec3(0, 0, 5) })
+    local camera = visuals.camera
+    sim:on_start(function() camera:look_at(vec3(0, -4, 1), vec3(0, 0, 1), 0.5) end)
+    sim:after(1, function() camera:follow(ball:part("ball")) end)
+    sim:after(2, function() camera:follow(nil) end)
+  )",
+                       31),
+            "");
+  EXPECT_NEAR(read("/visuals/camera/eye")[1], -4, 1e-9);
+  stage.tick(80);
+  const double height = stage.world.find_body("ball")->pose().position.z;
+  EXPECT_LT(height, 2);
+  EXPECT_NEAR(read("/visuals/camera/target")[2], height, 1e-9);
+  EXPECT_NEAR(read("/visuals/camera/eye")[1], -4, 1e-9);
+  stage.tick(40);
+  EXPECT_GT(read("/visuals/camera/target")[2], stage.world.find_body("ball")->pose().position.z + 1) << "it goes with nothing now";
+}
+
 TEST_F(Picture, WhatIsWrongIsSaid) {
+  EXPECT_NE(error_of("visuals.camera:look_at(vec3(1, 0, 0), vec3(), 0)").find("seconds above 0, not 0"),
+            std::string::npos);
+  EXPECT_NE(error_of("visuals.camera:look_at(vec3(1, 0, 0), vec3(), 1)").find("use sim:on_start"), std::string::npos);
+  EXPECT_NE(error_of("visuals.camera:follow(sim)").find("use sim:on_start"), std::string::npos);
+  ASSERT_EQ(stage.play("sim:on_start(function() visuals.camera:follow(sim) end)"), "");
+  ASSERT_EQ(stage.host.faults.size(), 1u);
+  EXPECT_NE(stage.host.faults[0].text.find("a body, a part, or nil, not sim"), std::string::npos);
   EXPECT_NE(error_of("visuals.camera.projection = { 40, 1, 10, 5 }").find("must be further away"), std::string::npos);
   EXPECT_NE(error_of("visuals.camera.projection = 40").find("takes { fovy, aspect, near, far }"), std::string::npos);
   EXPECT_NE(error_of("visuals.camera.fov = 40").find("did you mean 'fovy'?"), std::string::npos);

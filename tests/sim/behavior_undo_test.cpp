@@ -46,13 +46,13 @@ Left play(const std::function<void(Cast&)>& call, bool good) {
   return {s.world.state_hash(), BehaviorRig::take_diary(), s.list().order()};
 }
 
-struct Deed {
+struct ListDeed {
   const char* name;
   std::function<void(Cast&)> call;
 };
 
-const std::vector<Deed>& deeds() {
-  static const std::vector<Deed> list = {
+const std::vector<ListDeed>& list_deeds() {
+  static const std::vector<ListDeed> list = {
       {"the first", [](Cast& c) { c.s.list().remove(c.one); }},
       {"one in the middle", [](Cast& c) { c.s.list().remove(c.two); }},
       {"two of one body", [](Cast& c) { c.s.list().remove(c.two), c.s.list().remove(c.one); }},
@@ -98,7 +98,7 @@ const std::vector<Deed>& deeds() {
 TEST(BehaviorUndo, AFailingCallHasNotRemovedThem) {
   const Left alone = play([](Cast&) {}, true);
   EXPECT_EQ(play([](Cast&) {}, false), alone);
-  for (const Deed& deed : deeds()) {
+  for (const ListDeed& deed : list_deeds()) {
     EXPECT_EQ(play(deed.call, false), alone) << deed.name;
     EXPECT_NE(play(deed.call, true), alone) << deed.name;
   }

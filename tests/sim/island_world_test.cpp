@@ -15,19 +15,19 @@ namespace {
 constexpr double kTick = 1.0 / 60.0;
 
 // A world with a floor, boxes that collide, and arms of boxes.
-struct Stage {
-  Stage() {
+struct IslandStage {
+  IslandStage() {
     world.setGravity(btVector3(0, 0, -9.81f));
     add(0, plane, {{0, 0, 0}, quat_identity()});
   }
-  ~Stage() {
+  ~IslandStage() {
     for (auto& joint : joints) world.removeConstraint(joint.get());
     for (auto& body : bodies) {
       if (body->isInWorld()) world.removeRigidBody(body.get());
     }
   }
-  Stage(const Stage&) = delete;
-  Stage& operator=(const Stage&) = delete;
+  IslandStage(const IslandStage&) = delete;
+  IslandStage& operator=(const IslandStage&) = delete;
 
   btRigidBody& add(double mass, btCollisionShape& shape, const Pose& pose) {
     btVector3 inertia(0, 0, 0);
@@ -75,8 +75,8 @@ bool same_bits(const btRigidBody& a, const btRigidBody& b) {
 }
 
 TEST(IslandWorld, AnIslandMovesTheSameAloneAndAmongOthers) {
-  Stage alone;
-  Stage crowd;
+  IslandStage alone;
+  IslandStage crowd;
   const Vec3 at(1, 2, 0);
   // others before it, after it, and one that comes and goes
   for (int i = 0; i < 6; ++i) crowd.arm({10.0 + 2 * i, -5, 0}, 2 + i);
@@ -97,8 +97,8 @@ TEST(IslandWorld, AnIslandMovesTheSameAloneAndAmongOthers) {
 }
 
 TEST(IslandWorld, BatchesOfIslandsChangeNoResult) {
-  Stage one;
-  Stage many;
+  IslandStage one;
+  IslandStage many;
   one.world.getSolverInfo().m_minimumSolverBatchSize = 1;
   many.world.getSolverInfo().m_minimumSolverBatchSize = 1000;
   std::vector<btRigidBody*> a;
@@ -216,7 +216,7 @@ TEST(IslandWorld, NothingHappensWithoutTime) {
 }
 
 // Two boxes that overlap by 2 cm: apart after a second if they collide.
-double pushed_apart(Stage& stage, btRigidBody& a, btRigidBody& b) {
+double pushed_apart(IslandStage& stage, btRigidBody& a, btRigidBody& b) {
   for (btRigidBody* body : {&a, &b}) {
     body->clearForces();
     body->setLinearVelocity(btVector3(0, 0, 0));
@@ -229,7 +229,7 @@ double pushed_apart(Stage& stage, btRigidBody& a, btRigidBody& b) {
 }
 
 TEST(IslandWorld, JoinedPartsDoNotCollideUntilTheirLastJointGoes) {
-  Stage stage;
+  IslandStage stage;
   stage.world.setGravity(btVector3(0, 0, 0));
   btRigidBody& a = stage.add(1, stage.box, {{0, 0, 1}, quat_identity()});
   btRigidBody& b = stage.add(1, stage.box, {{0.08, 0, 1}, quat_identity()});
@@ -258,7 +258,7 @@ TEST(IslandWorld, JoinedPartsDoNotCollideUntilTheirLastJointGoes) {
 }
 
 TEST(IslandWorld, ABallBouncesToRestitutionSquaredTimesItsHeight) {
-  Stage stage;
+  IslandStage stage;
   btSphereShape ball(0.1f);
   btRigidBody& part = stage.add(1, ball, {{0, 0, 2.1}, quat_identity()});
   part.setRestitution(0.5f);
@@ -275,21 +275,21 @@ TEST(IslandWorld, ABallBouncesToRestitutionSquaredTimesItsHeight) {
 }
 
 // Counts what Bullet and IslandWorld take from the heap.
-int allocations = 0;
+int bullet_allocations = 0;
 void* counting_alloc(std::size_t size) {
-  ++allocations;
+  ++bullet_allocations;
   return std::malloc(size);
 }
 void plain_free(void* memory) { std::free(memory); }
 
 TEST(IslandWorld, NoStepAllocatesOnceTheSceneStands) {
-  Stage stage;
+  IslandStage stage;
   for (int i = 0; i < 5; ++i) stage.arm({2.0 * i, 0, 0}, 6);
   for (int i = 0; i < 120; ++i) stage.world.step(kTick / 4, 4);
   btAlignedAllocSetCustom(counting_alloc, plain_free);
-  allocations = 0;
+  bullet_allocations = 0;
   for (int i = 0; i < 120; ++i) stage.world.step(kTick / 4, 4);
-  const int counted = allocations;
+  const int counted = bullet_allocations;
   btAlignedAllocSetCustom(nullptr, nullptr);
   EXPECT_EQ(counted, 0);
 }

@@ -9,8 +9,8 @@ namespace {
 using namespace test;
 
 /// Bodies of two balls each along x: bodies at 0, 1, 2 …, the second ball 10 above the first.
-struct Row : BehaviorRig {
-  explicit Row(int count) {
+struct RowOfParts : BehaviorRig {
+  explicit RowOfParts(int count) {
     Shape& ball = shape(sphere_model(0.05));
     for (int i = 0; i < count; i++) {
       Body& b = body("b" + std::to_string(i));
@@ -42,7 +42,7 @@ struct Row : BehaviorRig {
 using Indices = std::vector<std::uint32_t>;
 
 TEST(Neighbors, AreOfOtherBodiesInTheOrderOfTheParts) {
-  Row s(6);
+  RowOfParts s(6);
   EXPECT_EQ(s.near(*s.low[2], 1), (Indices{2, 6}));
   EXPECT_EQ(s.near(*s.low[2], 2.5), (Indices{0, 2, 6, 8}));
   EXPECT_EQ(s.near(*s.low[2], 10), (Indices{0, 2, 6, 8, 10}));  // its own body's high part is 10 away
@@ -52,7 +52,7 @@ TEST(Neighbors, AreOfOtherBodiesInTheOrderOfTheParts) {
 }
 
 TEST(Neighbors, HaveOffsetAndDistance) {
-  Row s(3);
+  RowOfParts s(3);
   std::vector<Neighbor> found;
   s.all->near(*s.low[0], 10.1, found);
   ASSERT_EQ(found.size(), 3U);
@@ -63,7 +63,7 @@ TEST(Neighbors, HaveOffsetAndDistance) {
 }
 
 TEST(Neighbors, ACoincidentPartIsOneAtRadiusZero) {
-  Row s(2);
+  RowOfParts s(2);
   EXPECT_EQ(s.near(*s.low[0], 0), Indices{});
   s.low[1]->set_pose(s.low[0]->pose());
   s.turn();
@@ -71,7 +71,7 @@ TEST(Neighbors, ACoincidentPartIsOneAtRadiusZero) {
 }
 
 TEST(Neighbors, AreWhereTheyWereWhenTheTurnBegan) {
-  Row s(2);
+  RowOfParts s(2);
   EXPECT_EQ(s.near(*s.low[0], 2), (Indices{2}));
   s.low[1]->set_pose({{50, 0, 0}, quat_identity()});
   EXPECT_EQ(s.near(*s.low[0], 2), (Indices{2}));
@@ -80,7 +80,7 @@ TEST(Neighbors, AreWhereTheyWereWhenTheTurnBegan) {
 }
 
 TEST(Neighbors, ABodyThatIsOutOfTheWorldIsNone) {
-  Row s(3);
+  RowOfParts s(3);
   s.world.find_body("b1")->set_enabled(false);
   s.turn();
   EXPECT_EQ(s.near(*s.low[0], 5), (Indices{4}));
@@ -90,7 +90,7 @@ TEST(Neighbors, ABodyThatIsOutOfTheWorldIsNone) {
 }
 
 TEST(Neighbors, MeansAreTheSameByEveryWay) {
-  Row s(40);
+  RowOfParts s(40);
   for (std::size_t i = 0; i < s.low.size(); i++) {
     const double x = static_cast<double>(i);
     s.low[i]->set_velocity({x, 0, 1}, {0, x, 0});
@@ -126,7 +126,7 @@ TEST(Neighbors, MeansAreTheSameByEveryWay) {
 }
 
 TEST(Neighbors, WhoAsksTheSameInOneTurnGetsTheSame) {
-  Row s(10);
+  RowOfParts s(10);
   const std::vector<Part*> everyone = s.mixed();
   const NeighborMeans* const first = s.all->means(everyone, 0, 2, kWantVelocity).data();
   EXPECT_EQ(s.all->means(everyone, 0, 2, 0).data(), first);
@@ -135,7 +135,7 @@ TEST(Neighbors, WhoAsksTheSameInOneTurnGetsTheSame) {
 }
 
 TEST(Neighbors, ASetKnowsItsPartsFromOthersInTheSamePlace) {
-  Row s(2);
+  RowOfParts s(2);
   EXPECT_TRUE(s.all->holds(s.mixed()));
   std::vector<Part*> fewer = s.mixed();
   fewer.pop_back();

@@ -29,7 +29,24 @@ P.owner_of = owner
 for _, class in ipairs { part, joint, motor } do class.getters.body = owner end
 part.getters.shape = related(0)
 joint.getters.parent, joint.getters.child, joint.getters.motor = related(0), related(1), related(2)
-motor.getters.joint = related(0)
+
+-- a motor keeps its joint, so it is asked once, by the motor's slot. When the slot is another motor's, the old joint is
+-- gone as well, unless the old motor was taken back.
+local joint_of = {}
+local ask_joint = related(0)
+motor.getters.joint = function(h)
+  P.slot_of(h)
+  local its = joint_of[h.slot_]
+  if its == nil or not P.alive(its) then
+    its = ask_joint(h)
+    joint_of[h.slot_] = its
+  end
+  return its
+end
+-- slots mean other things now
+function P.relations_moved() joint_of = {} end
+P.on_failure[#P.on_failure + 1] = P.relations_moved
+
 body.getters.root = related(0)
 body.getters.parts, body.getters.joints, body.getters.motors = list(parts), list(joints), list(motors)
 joint.getters.type = function(h)

@@ -30,12 +30,31 @@ camera.setters.projection = function(h, value)
   for i, name in ipairs(four) do camera.setters[name](h, value[i]) end
 end
 
-camera.methods.look_at = function(h, eye, target)
+camera.methods.look_at = function(h, eye, target, seconds)
   P.check_self(h, camera, "look_at")
   eye, target = P.want_vec3(eye, "look_at: the eye"), P.want_vec3(target, "look_at: the target")
+  if seconds ~= nil then
+    if P.want_number(seconds, "look_at: the seconds") <= 0 then
+      fail("look_at takes seconds above 0, not %s; without seconds it looks there at once", tostring(seconds))
+    end
+    P.needs_callback("camera:look_at with seconds")
+    return api.camera_glide(ctx, eye.x, eye.y, eye.z, target.x, target.y, target.z, seconds)
+  end
   camera.setters.eye(h, eye)
   camera.setters.target(h, target)
   camera.setters.eye(h, eye)
+end
+
+camera.methods.follow = function(h, thing)
+  P.check_self(h, camera, "follow")
+  P.needs_callback("camera:follow")
+  if thing == nil then return api.camera_follow(ctx, -1, 0) end
+  local kind = P.class_of(thing)
+  if kind ~= classes.body and kind ~= classes.part then
+    fail("camera:follow takes a body, a part, or nil, not %s", describe(thing))
+  end
+  if not thing.alive then P.gone(thing) end
+  api.camera_follow(ctx, thing.slot_, thing.generation_)
 end
 
 local the_camera = P.thing(P.camera_slot, P.camera_generation)

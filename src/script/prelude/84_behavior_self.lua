@@ -193,7 +193,7 @@ function entry.make_behavior(file, slot, generation)
   local body = P.answered()
   P.introduce(h, name, body)
   instances[number] = { handle = h, type = of, body = body, state = {}, rng = P.R(slot, generation) }
-  group_of[number] = of.is_group and api.neighbor_part(ctx, slot, generation, -2)
+  group_of[number] = of.is_group and api.behavior_group(ctx, slot, generation)
   for _, known in pairs(lists_of) do known[number] = false end  -- a row without gaps
   selfs[number], starts[number], steps[number], migrates[number] = h, of.start, of.step, of.migrate
   return number

@@ -29,6 +29,7 @@ function P.entry.become_live(timers_at)
   gathered, pointers = {}, nil
   P.number_classes()
   P.lists_moved()
+  P.relations_moved()
   P.params_moved()
   if timers_at then P.timers_moved(timers_at) end
 end
