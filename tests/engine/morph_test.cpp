@@ -11,7 +11,7 @@ namespace {
 
 constexpr double kTick = 1.0 / 60;
 
-constexpr const char* kScene = R"(
+constexpr const char* kMorphScene = R"(
 sim.gravity = vec3(0, 0, 0)
 params { { "wind", 0, min = -10, max = 10 }, { "on", false }, { "way", "in", choices = { "in", "out" } } }
 local ball = sim:add_sphere_shape("ball", 0.05)
@@ -22,7 +22,7 @@ two:add_part("tip", ball, { position = vec3(0, -1, 1) })
 )";
 
 const std::string kWind = "/scene/wind";
-const std::string kOfOne = "/physics/body/one/part/tip/friction";
+const std::string kFrictionOfOne = "/physics/body/one/part/tip/friction";
 const std::string kOfTwo = "/physics/body/two/part/tip/friction";
 
 // "far": wind 10, on, out, friction 2.5 of both; the scene stands at its own values
@@ -30,7 +30,7 @@ void store_far(Show& show) {
   show.send(kWind, 10);
   show.send("/scene/on", true);
   show.send("/scene/way", "out");
-  show.send(kOfOne, 2.5);
+  show.send(kFrictionOfOne, 2.5);
   show.send(kOfTwo, 2.5);
   show.send("/preset/store", "far");
   show.send("/preset/store", "one", "/physics/body/one//*");
@@ -49,7 +49,7 @@ TEST(Morph, GoesItsWayInSimulatedTime) {
                              {"in", [](double t) { return t * t; }},
                              {"out", [](double t) { return 1 - (1 - t) * (1 - t); }}};
   for (const Case& c : kCases) {
-    Edited edited(kScene);
+    Edited edited(kMorphScene);
     Show& show = edited.show();
     store_far(show);
     show.send("/preset/recall", "far", 1, c.easing);
@@ -74,7 +74,7 @@ TEST(Morph, GoesItsWayInSimulatedTime) {
 }
 
 TEST(Morph, StandsStillWithTime) {
-  Edited edited(kScene);
+  Edited edited(kMorphScene);
   Show& show = edited.show();
   store_far(show);
   show.send("/preset/recall", "far", 2, "linear");
@@ -94,58 +94,60 @@ TEST(Morph, StandsStillWithTime) {
 }
 
 TEST(Morph, AHandOnARowWins) {
-  Edited edited(std::string(kScene) + "osc:on('/mine', function(v) sim:body('two'):part('tip').friction = v end)\n");
+  Edited edited(std::string(kMorphScene) +
+                "osc:on('/mine', function(v) sim:body('two'):part('tip').friction = v end)\n");
   Show& show = edited.show();
   store_far(show);
   show.send("/preset/recall", "far", 1);
   show.ticks(20);
-  show.send(kOfOne, 0.125);
+  show.send(kFrictionOfOne, 0.125);
   show.send("/mine", 0.25);
   show.ticks(60);
-  EXPECT_EQ(show.read(kOfOne), 0.125) << "a message";
+  EXPECT_EQ(show.read(kFrictionOfOne), 0.125) << "a message";
   EXPECT_EQ(show.read(kOfTwo), 0.25) << "a handler of the scene's";
   EXPECT_EQ(show.read(kWind), 10) << "the others go on";
   // in one datagram: what comes after the recall is the newer hand
   show.send("/preset/recall", "script");
   show.ticks(1);
-  show.link.inbox.push({{message("/preset/recall", "far", 0.5), message(kOfOne, 1.75)}, {Hand::osc, 0x7f000001, 4000}});
+  show.link.inbox.push(
+      {{message("/preset/recall", "far", 0.5), message(kFrictionOfOne, 1.75)}, {Hand::osc, 0x7f000001, 4000}});
   show.ticks(60);
-  EXPECT_EQ(show.read(kOfOne), 1.75);
+  EXPECT_EQ(show.read(kFrictionOfOne), 1.75);
   EXPECT_EQ(show.read(kOfTwo), 2.5);
 }
 
 TEST(Morph, WhatABehaviourWritesIsNoHand) {
-  Edited edited(std::string(kScene) +
+  Edited edited(std::string(kMorphScene) +
                 "sim:on_step(function() if params.on then return end sim:body('one'):part('tip').friction = 9 end)\n");
   Show& show = edited.show();
   store_far(show);
   show.send("/preset/recall", "far", 1, "linear");
   show.ticks(20);
-  EXPECT_EQ(show.read(kOfOne), 9) << "it writes later in the tick";
+  EXPECT_EQ(show.read(kFrictionOfOne), 9) << "it writes later in the tick";
   show.ticks(45);
-  EXPECT_EQ(show.read(kOfOne), 2.5) << "and at the end the preset is whole";
+  EXPECT_EQ(show.read(kFrictionOfOne), 2.5) << "and at the end the preset is whole";
 }
 
 TEST(Morph, TwoOnDisjointRowsAndANewerOneOnTheSame) {
-  Edited edited(kScene);
+  Edited edited(kMorphScene);
   Show& show = edited.show();
   store_far(show);
   show.send("/preset/recall", "one", 1, "linear");
   show.send("/preset/recall", "two", 2, "linear");
   show.ticks(31);
-  EXPECT_NEAR(show.read(kOfOne), 1.5, 1e-9);
+  EXPECT_NEAR(show.read(kFrictionOfOne), 1.5, 1e-9);
   EXPECT_NEAR(show.read(kOfTwo), 1.0, 1e-9);
   // back, of both: the two that run give way
   show.send("/preset/recall", "script", 0.5, "linear");
   show.ticks(16);
-  EXPECT_NEAR(show.read(kOfOne), 1.0 + 2 * kTick / 2, 0.05);
+  EXPECT_NEAR(show.read(kFrictionOfOne), 1.0 + 2 * kTick / 2, 0.05);
   show.ticks(100);
-  EXPECT_EQ(show.read(kOfOne), 0.5);
+  EXPECT_EQ(show.read(kFrictionOfOne), 0.5);
   EXPECT_EQ(show.read(kOfTwo), 0.5);
 }
 
 TEST(Morph, GoesOnThroughAReload) {
-  Edited edited(kScene);
+  Edited edited(kMorphScene);
   Show& show = edited.show();
   store_far(show);
   const NodeId before = edited.part("one", "tip").id();
@@ -155,33 +157,33 @@ TEST(Morph, GoesOnThroughAReload) {
   EXPECT_EQ(edited.edit("one:add_part(\"tip\", ball,", "one:add_part(\"tip\", sim:add_sphere_shape(\"big\", 0.1),"),
             Reload::End::applied);
   EXPECT_NE(edited.part("one", "tip").id(), before);
-  EXPECT_NEAR(show.read(kOfOne), 1.5, 1e-9);
+  EXPECT_NEAR(show.read(kFrictionOfOne), 1.5, 1e-9);
   show.ticks(15);
-  EXPECT_NEAR(show.read(kOfOne), 2.0, 1e-9);
+  EXPECT_NEAR(show.read(kFrictionOfOne), 2.0, 1e-9);
   const std::string two = edited.text.substr(edited.text.find("local two"));
   EXPECT_EQ(edited.edit(two, ""), Reload::End::applied);
   show.ticks(3);
   EXPECT_EQ(edited.save(edited.text + two), Reload::End::applied);
   show.ticks(30);
-  EXPECT_EQ(show.read(kOfOne), 2.5);
+  EXPECT_EQ(show.read(kFrictionOfOne), 2.5);
   EXPECT_EQ(show.read(kOfTwo), 2.5);
   EXPECT_EQ(show.read(kWind), 10);
 }
 
 TEST(Morph, ALineThatIsEditedOnTheWayWins) {
-  Edited edited(std::string(kScene) + "one:part('tip').friction = 0.5\n");
+  Edited edited(std::string(kMorphScene) + "one:part('tip').friction = 0.5\n");
   Show& show = edited.show();
   store_far(show);
   show.send("/preset/recall", "far", 1, "linear");
   show.ticks(31);
   EXPECT_EQ(edited.edit("friction = 0.5", "friction = 0.75"), Reload::End::applied);
   show.ticks(60);
-  EXPECT_EQ(show.read(kOfOne), 0.75);
+  EXPECT_EQ(show.read(kFrictionOfOne), 0.75);
   EXPECT_EQ(show.read(kOfTwo), 2.5);
 }
 
 TEST(Morph, PosesGoAlongArcs) {
-  Edited edited(kScene);
+  Edited edited(kMorphScene);
   Show& show = edited.show();
   const Vec3 axis = normalized(Vec3(1, 2, -1));
   const std::string part = "/physics/body/one/part/tip";
@@ -212,7 +214,7 @@ TEST(Morph, PosesGoAlongArcs) {
 }
 
 TEST(Morph, AResetIsAtItsEnd) {
-  Edited edited(kScene);
+  Edited edited(kMorphScene);
   Show& show = edited.show();
   store_far(show);
   show.send("/preset/recall", "far", 5);
