@@ -58,8 +58,8 @@ std::vector<const Table*> described_classes() {
     all.push_back(type->table);
     if (type->group_table != nullptr) all.push_back(type->group_table);
   }
-  all.insert(all.end(),
-             {&Visuals::table(), &Camera::table(), &Shape::table(), &Transport::table(), &CounterNode::table()});
+  all.insert(all.end(), {&Visuals::table(), &Camera::table(), &Look::table(), &Shape::table(), &Transport::table(),
+                         &CounterNode::table()});
   return all;
 }
 

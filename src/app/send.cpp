@@ -50,15 +50,15 @@ std::vector<Message> receive(int fd, double seconds) {
   return decoded ? std::move(decoded->messages) : std::vector<Message>();
 }
 
-struct Heard {
+struct Answered {
   bool last = false;   // of what is answered at once nothing more will come
   bool whole = false;  // nor anything else
   bool refused = false;
 };
 
 // `late`: what is waited for comes from beside the simulation, later than answers to what was asked behind it
-Heard show_answers(int fd, double wait, bool late, const std::function<void()>& ask) {
-  Heard answers;
+Answered show_answers(int fd, double wait, bool late, const std::function<void()>& ask) {
+  Answered answers;
   int asked = 1;
   bool heard = !late;
   ask();
@@ -118,7 +118,7 @@ int send_command(const SendCommand& command) {
   if (command.wait <= 0) return kFine;
   const auto ask = [&] { (void)send_message(socket->fd(), *to, {"/get", {Arg::of(kLast)}}); };
   const bool late = message.address.starts_with("/transport/scene") || message.address.starts_with("/list/scenes");
-  const Heard answers = show_answers(socket->fd(), command.wait, late, ask);
+  const Answered answers = show_answers(socket->fd(), command.wait, late, ask);
   if (answers.refused) return kInput;
   if (!answers.last) {
     return fail(

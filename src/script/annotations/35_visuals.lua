@@ -1,9 +1,10 @@
 -- What the picture is drawn with.
 
----The picture: its background, the camera, the materials of the shapes.
+---The picture: its background, the camera, the look, the materials of the shapes.
 ---@class visuals
 ---@field alive boolean # read-only. Always true.
 ---@field camera camera # read-only.
+---@field look look # read-only.
 ---@rows visuals
 visuals = {}
 
@@ -23,3 +24,9 @@ local camera_ = {}
 ---@param eye vec3like
 ---@param target vec3like
 function camera_:look_at(eye, target) end
+
+---How the picture is lit, and its stage.
+---@class look
+---@field alive boolean # read-only. Always true.
+---@rows look
+local look_ = {}
