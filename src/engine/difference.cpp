@@ -221,8 +221,8 @@ bool Difference::empty() const {
   const auto same = [](const BehaviorDifference& d) { return d.described && !d.anew && d.rows == 0; };
   const auto all_same = [&](const auto& list) { return std::all_of(list.begin(), list.end(), same); };
   return !other_order && gone_behaviors.empty() && gone_groups.empty() && all_same(groups) &&
-         std::all_of(behaviors.begin(), behaviors.end(), all_same) && world == 0 && visuals == 0 && camera == 0 && look == 0 &&
-         shapes.empty() && bodies.empty() && gone_shapes.empty() && gone_bodies.empty() &&
+         std::all_of(behaviors.begin(), behaviors.end(), all_same) && world == 0 && visuals == 0 && camera == 0 &&
+         look == 0 && shapes.empty() && bodies.empty() && gone_shapes.empty() && gone_bodies.empty() &&
          std::all_of(shapes_before.begin(), shapes_before.end(), there) &&
          std::all_of(bodies_before.begin(), bodies_before.end(), there);
 }
