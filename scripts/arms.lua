@@ -11,6 +11,7 @@ local kRadius = 2.5 -- m
 local kHeight = 5 -- m, of the upper ring
 
 sim.gravity = vec3(0, 0, -9.81)
+visuals.camera:look_at(vec3(6.6, -8.6, 3.2), vec3(0, 0, 2.3))
 
 params {
   { "rate", 0.12, min = 0, max = 1, unit = "Hz", doc = "Breaths per second, of all arms." },

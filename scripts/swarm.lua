@@ -7,6 +7,7 @@ local kCreatures = 100
 local kArena = 5 -- m, the radius in which they stay
 
 sim.gravity = vec3(0, 0, -9.81)
+visuals.camera:look_at(vec3(4.5, -6.5, 3.5), vec3(0, 0, 0))
 
 params {
   { "home", 1.5, min = 0, max = 20, unit = "m/s²", doc = "How strongly the edge of the arena turns them back." },

@@ -610,11 +610,12 @@ function timer_:cancel() end
 
 -- What the picture is drawn with.
 
----The picture: its background, the camera, the materials of the shapes.
+---The picture: its background, the camera, the look, the materials of the shapes.
 ---@class visuals
 ---@field alive boolean # read-only. Always true.
 ---@field camera camera # read-only.
----@field background vec3like # hsb, 0 .. 1, default 0.62 0.45 0.06. Behind everything, as hue, saturation, brightness.
+---@field look look # read-only.
+---@field background vec3like # hsb, 0 .. 1, default 0.62 0.45 0.06. Behind everything, as hue, saturation, brightness; the default: as the look has it.
 visuals = {}
 
 ---A shape by its name, whose rows are its material. Those of a URDF file are called robot.link, robot.link.2, …
@@ -648,6 +649,21 @@ function camera_:look_at(eye, target, seconds) end
 ---change them. nil: goes with nothing.
 ---@param thing body|part|nil
 function camera_:follow(thing) end
+
+---How the picture is lit, and its stage.
+---@class look
+---@field alive boolean # read-only. Always true.
+---@field style "stage"|"studio" # default stage. A dark stage with a spotlight and a mirroring floor, or a bright studio. The rows below are multiples of what it has.
+---@field exposure number # 0 .. 16, default 1. How bright the picture is; what is too bright turns white softly.
+---@field ambient number # 0 .. 10, default 1. Light from everywhere, in the background's tint.
+---@field lamp number # 0 .. 10, default 1. The one lamp that casts shadows.
+---@field rim number # 0 .. 10, default 1. Light from behind, along the edges of shapes.
+---@field shadow number # 0 .. 1, default 1. How dark shadows are; 0: none.
+---@field fog number # 0 .. 10, default 1. How soon distance turns into background.
+---@field grid number # 0 .. 10, default 1. How plain the lines on the floor are, a metre apart.
+---@field mirror number # 0 .. 3, default 1. How much the floor mirrors; the studio's does not.
+---@field floor boolean # default true. A floor at height 0, where no plane of the scene is one.
+local look_ = {}
 
 -- A scene's own parameters and state, and OSC.
 

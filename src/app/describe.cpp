@@ -58,7 +58,7 @@ std::vector<const Table*> described_classes() {
     all.push_back(type->table);
     if (type->group_table != nullptr) all.push_back(type->group_table);
   }
-  all.insert(all.end(), {&Visuals::table(), &Camera::table(), &Shape::table(), &Transport::table(),
+  all.insert(all.end(), {&Visuals::table(), &Camera::table(), &Look::table(), &Shape::table(), &Transport::table(),
                          &PresetNode::table(), &CounterNode::table()});
   return all;
 }

@@ -9,13 +9,18 @@
 
 #include <fmt/format.h>
 #include <sys/utsname.h>
+#include <unistd.h>
 
 #include "app/exit_code.h"
 #include "app/paths.h"
+#include "app/window.h"
 #include "base/build_info.h"
+#include "base/text.h"
 #include "engine/link.h"
 #include "osc/network.h"
 #include "query/server.h"
+#include "view/gl.h"
+#include "view/offscreen.h"
 
 namespace limber {
 
@@ -62,6 +67,27 @@ bool check_ports() {
   return open.ok() && panel.ok();
 }
 
+bool program_in_path(const std::string& name) {
+  const char* const path = std::getenv("PATH");
+  for (const std::string_view folder : split(path == nullptr ? "" : path, ':')) {
+    if (access(fmt::format("{}/{}", folder, name).c_str(), X_OK) == 0) return true;
+  }
+  return false;
+}
+
+void check_drawing() {
+  const auto context = Offscreen::make();
+  if (context) {
+    finding(gl_is_software() ? "mind" : "ok", "OpenGL",
+            gl_driver() + (gl_is_software() ? ": software, slow; windows begin with --quality low" : ""));
+  } else {
+    finding("mind", "OpenGL", context.error());
+  }
+  const bool video = program_in_path("ffmpeg");
+  finding(video ? "ok" : "mind", "ffmpeg",
+          video ? "there, for --render film.mp4" : "not there: --render makes stills only; apt-get install ffmpeg");
+}
+
 }  // namespace
 
 int doctor_command() {
@@ -92,8 +118,8 @@ int doctor_command() {
                         "sysctl -w net.core.rmem_max={} lifts that",
                         buffer, kWanted));
   }
-  const bool display = std::getenv("DISPLAY") != nullptr || std::getenv("WAYLAND_DISPLAY") != nullptr;
-  finding("ok", "display", display ? "there is one; this version plays headless" : "none; Limber plays headless");
+  finding("ok", "display", Window::has_display() ? "there is one, for the window" : "none; Limber plays headless");
+  check_drawing();
   return data.empty() || !ports ? kMachine : kFine;
 }
 

@@ -22,6 +22,7 @@
 #include "app/monitor.h"
 #include "app/new.h"
 #include "app/paths.h"
+#include "app/picture_options.h"
 #include "app/play.h"
 #include "app/preset.h"
 #include "app/send.h"
@@ -75,10 +76,11 @@ CLI::Validator whole_number() {
 CLI::App* add_play(CLI::App& app, PlayOptions& o) {
   CLI::App* play = app.add_subcommand("play", "play a scene (the default command)");
   play->add_option("scene", o.scene, "the scene's file; left out: scripts/arms.lua")->type_name("SCENE.lua");
-  play->add_flag_callback(
-      "--headless", [] {}, "without a window (today it always is)");
+  add_picture_options(*play, o.picture);
   play->add_flag("--fast", o.fast, "as fast as it can instead of in real time; no OSC, no OSCQuery unless asked for");
-  play->add_option("--duration", o.duration, "end at that simulated time")->type_name("S")->check(positive_time());
+  play->add_option("--duration,--seconds", o.duration, "end at that simulated time")
+      ->type_name("S")
+      ->check(positive_time());
   play->add_option("--ticks", o.ticks, "end after so many ticks")->type_name("N")->check(whole_number());
   play->add_option("--seed", o.seed, "seed of everything random; wins over sim.seed of the scene")
       ->type_name("N")

@@ -27,6 +27,13 @@ std::string data_dir() {
   return {};
 }
 
+std::string shader_dir() {
+  const std::string data = data_dir();
+  std::error_code fault;
+  if (data.empty() || !fs::is_regular_file(fs::path(data) / "shaders/common.glsl", fault)) return {};
+  return (fs::path(data) / "shaders").string();
+}
+
 std::string find_scene(std::string_view name, std::vector<std::string>& looked) {
   if (name.empty()) return {};
   std::vector<fs::path> places{fs::path(name)};

@@ -11,6 +11,9 @@ namespace limber {
 /// it, or the installed one; empty when there is none. [any]
 std::string data_dir();
 
+/// The folder of shaders/ among that data, which may be edited while it plays; empty when there is none. [any]
+std::string shader_dir();
+
 /// The file as given, else in the data folder; empty when neither is there. `looked` gets every place. [any]
 std::string find_scene(std::string_view name, std::vector<std::string>& looked);
 

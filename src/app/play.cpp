@@ -1,10 +1,11 @@
-// Playing headless: the simulation's thread, the network's thread, signals and the status line on the main one.
+// Playing: the simulation's thread, the network's thread; signals, and the window or the status line on the main one.
 #include "app/play.h"
 
 #include <atomic>
 #include <csignal>
 #include <cstdio>
 #include <cstdlib>
+#include <memory>
 #include <optional>
 #include <semaphore>
 #include <thread>
@@ -14,7 +15,9 @@
 #include "app/exit_code.h"
 #include "app/paths.h"
 #include "app/query_doors.h"
+#include "app/render.h"
 #include "app/scene_watch.h"
+#include "app/window_show.h"
 #include "base/build_info.h"
 #include "base/log.h"
 #include "base/text.h"
@@ -111,10 +114,10 @@ sigset_t block_signals() {
 
 enum class Heard : std::uint8_t { nothing, call, end };
 
-// waits for a signal, a second at most
-Heard listen(const sigset_t& signals) {
-  const timespec second = {1, 0};
-  const int signal = sigtimedwait(&signals, nullptr, &second);
+// waits for a signal, so many seconds
+Heard listen(const sigset_t& signals, int seconds = 1) {
+  const timespec time = {seconds, 0};
+  const int signal = sigtimedwait(&signals, nullptr, &time);
   return signal < 0 ? Heard::nothing : signal == SIGUSR1 ? Heard::call : Heard::end;
 }
 
@@ -133,12 +136,7 @@ void print_status(const EngineLink& link) {
 class Show {
  public:
   explicit Show(Engine& engine) : engine_(engine), main_(pthread_self()), thread_([this] { play(); }) {}
-  ~Show() {
-    if (!thread_.joinable()) return;
-    engine_.stop();
-    go_.release();
-    thread_.join();
-  }
+  ~Show() { end(); }
   Show(const Show&) = delete;
   Show& operator=(const Show&) = delete;
 
@@ -146,8 +144,17 @@ class Show {
   bool over() const { return state_.load() == State::over; }
   /// What the scene's run gave; once it has started.
   const Result<void>& result() const { return result_; }
-  /// The first tick may come.
-  void go() { go_.release(); }
+  /// The first tick may come. `anyway`: after a fault of the scene's, too; the world is empty and waits for a good run.
+  void go(bool anyway) {
+    anyway_.store(anyway);
+    go_.release();
+  }
+  void end() {
+    if (!thread_.joinable()) return;
+    engine_.stop();
+    go_.release();
+    thread_.join();
+  }
 
  private:
   enum class State : std::uint8_t { starting, started, over };
@@ -157,7 +164,7 @@ class Show {
     result_ = engine_.start();
     tell(State::started);
     go_.acquire();
-    if (result_) engine_.run();
+    if (result_ || anyway_.load()) engine_.run();
     tell(State::over);
   }
   void tell(State state) {
@@ -168,6 +175,7 @@ class Show {
   Engine& engine_;
   Result<void> result_;
   std::atomic<State> state_{State::starting};
+  std::atomic<bool> anyway_{false};
   std::counting_semaphore<2> go_{0};
   pthread_t main_;
   std::thread thread_;  // last: it starts when all else is there
@@ -180,12 +188,15 @@ class Show {
   std::_Exit(kInput);
 }
 
-// until the show is over by itself or somebody ends it; true: somebody did
-bool watch(const Show& show, Engine& engine, const EngineLink& link, const sigset_t& signals) {
+// until the show is over by itself or somebody ends it; true: somebody did. `window`: null when headless
+bool watch(const Show& show, Engine& engine, const EngineLink& link, const sigset_t& signals, WindowShow* window) {
   while (!show.over()) {
-    const Heard heard = listen(signals);
-    if (heard == Heard::nothing) print_status(link);
-    if (heard != Heard::end) continue;
+    const WindowShow::End end = window != nullptr ? window->frame() : WindowShow::End::none;
+    if (end == WindowShow::End::lost) window = nullptr;
+    const bool closed = end == WindowShow::End::closed;
+    const Heard heard = listen(signals, window != nullptr ? 0 : 1);
+    if (heard == Heard::nothing && window == nullptr) print_status(link);
+    if (heard != Heard::end && !closed) continue;
     engine.stop();
     for (int i = 0; i < 3 && !show.over(); i++) {
       if (listen(signals) == Heard::end) break;
@@ -233,6 +244,23 @@ Result<void> open_ports(const EngineLink& link, const OscOptions& osc, const Que
   return {};
 }
 
+bool may_open_window(const PlayOptions& options) {
+  return !options.fast && !options.picture.headless && Window::has_display();
+}
+
+// the window, or null and why not
+std::unique_ptr<WindowShow> open_window(const PlayOptions& options, EngineLink& link) {
+  if (options.fast) return nullptr;
+  std::string why;
+  if (!options.picture.headless) {
+    auto window = WindowShow::open(options.picture, printable(options.scene), link);
+    if (window) return std::move(*window);
+    why = fmt::format(" ({})", window.error());
+  }
+  fmt::print(stderr, "limber: playing headless{}; Ctrl+C ends it\n", why);
+  return nullptr;
+}
+
 int play_scene(const PlayOptions& options, EngineOptions engine_options, const OscOptions& osc,
                const QueryWish& query_wish, const sigset_t& signals) {
   EngineLink link;
@@ -249,16 +277,28 @@ int play_scene(const PlayOptions& options, EngineOptions engine_options, const O
     while (!show.started()) {
       if (listen(signals) == Heard::end) leave("ended while the scene was being read");
     }
-    if (!show.result()) return fail(kInput, show.result().error());
+    if (!show.result() && !may_open_window(options)) return fail(kInput, show.result().error());
     if (const Result<void> open = open_ports(link, osc, query_wish, network, query); !open)
       return fail(kMachine, open.error());
-    if (!options.fast) {
-      open_console(console);
-      fmt::print(stderr, "limber: playing headless; Ctrl+C ends it\n");
-    }
-    show.go();
+    if (!options.fast) open_console(console);
+    const std::unique_ptr<WindowShow> window = open_window(options, link);
+    if (!show.result() && window == nullptr) return fail(kInput, show.result().error());
+    show.go(window != nullptr);
     if (scene_watch) scene_watch->start();
-    interrupted = watch(show, engine, link, signals);
+    if (!show.result()) log_error("{}\nthe stage is empty and waits for the mended file", show.result().error());
+    // Xlib ends the program when the display goes: the show goes on in its place, and the program ends with that
+    Window::on_display_lost([&] {
+      log_error("the display is lost; playing on headless");
+      const bool ended = watch(show, engine, link, signals, nullptr);
+      show.end();
+      scene_watch.reset();
+      network.stop();
+      const int code = finish(options, engine, ended);
+      std::fflush(nullptr);
+      std::_Exit(code);
+    });
+    interrupted = watch(show, engine, link, signals, window.get());
+    Window::on_display_lost({});
   }
   scene_watch.reset();
   engine.finish_saving();
@@ -268,11 +308,26 @@ int play_scene(const PlayOptions& options, EngineOptions engine_options, const O
   return finish(options, engine, interrupted);
 }
 
+// a still or a film: time goes as fast as it is drawn, and nobody comes in from outside
+int render_scene(const PlayOptions& options, EngineOptions engine_options, const sigset_t& signals) {
+  EngineLink link;
+  const std::optional<double> duration = engine_options.duration;
+  Engine engine(link, std::move(engine_options));
+  if (const Result<void> started = engine.start(); !started) return fail(kInput, started.error());
+  const Rendered rendered = render(options.picture, engine, link, duration, [&] {
+    const timespec now = {0, 0};
+    return sigtimedwait(&signals, nullptr, &now) > 0;
+  });
+  return rendered.code != kFine ? rendered.code : finish(options, engine, rendered.cancelled);
+}
+
 }  // namespace
 
 int play_command(const PlayOptions& options) {
   const sigset_t signals = block_signals();
   fmt::print(stderr, "limber {} ({}): {}\n", version(), commit(), printable(options.scene));
+  if (Result<void> picture = check_picture(options.picture, options.duration); !picture)
+    return fail(kUsage, picture.error());
   Result<OscOptions> osc = parse_osc(options);
   if (!osc) return fail(kUsage, osc.error());
   Result<QueryWish> query = parse_query(options.query);
@@ -283,6 +338,7 @@ int play_command(const PlayOptions& options) {
   Result<EngineOptions> engine_options = parse_engine(options, scene);
   if (!engine_options) return fail(kUsage, engine_options.error());
   if (scene.empty()) return fail(kInput, no_scene(options.scene, looked));
+  if (options.picture.offline()) return render_scene(options, std::move(*engine_options), signals);
   return play_scene(options, std::move(*engine_options), *osc, *query, signals);
 }
 

@@ -6,6 +6,8 @@
 #include <string>
 #include <vector>
 
+#include "app/picture_options.h"
+
 namespace limber {
 
 /// The command line of `play`, as it was typed.
@@ -26,6 +28,7 @@ struct PlayOptions {
   std::vector<std::string> osc_out;
   bool osc_optional = false;
   std::string query;  ///< Empty: not given.
+  PictureOptions picture;
 };
 
 /// Plays; returns the exit code of product.md: 0 fine, 1 the input, 2 usage, 3 the machine. [main]

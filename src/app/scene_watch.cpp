@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <array>
 #include <filesystem>
+#include <memory>
 #include <utility>
 
 #include <fmt/format.h>
@@ -47,7 +48,10 @@ SceneWatch::SceneWatch(EngineLink& link, Engine& engine, const std::string& scen
 }
 
 void SceneWatch::start() {
-  thread_ = std::thread([this] { run(); });
+  // from here on a save is seen, whenever the thread begins
+  const auto files = std::make_shared<FileWatch>(way_);
+  files->watch(engine_.files(), FileWatch::Time::clock::now());
+  thread_ = std::thread([this, files] { run(*files); });
 }
 
 void SceneWatch::stop() {
@@ -64,11 +68,9 @@ void SceneWatch::wake() const {
   if (wake_ >= 0 && write(wake_, &one, sizeof one) < 0) return;  // full: somebody is called already
 }
 
-void SceneWatch::run() {
+void SceneWatch::run(FileWatch& files) {
   pthread_setname_np(pthread_self(), "limber-watch");
-  FileWatch files(way_);
   std::vector<Command> wishes;
-  files.watch(engine_.files(), FileWatch::Time::clock::now());
   while (!stop_.load()) {
     sleep(files);
     const bool saved = !files.poll(FileWatch::Time::clock::now()).empty();

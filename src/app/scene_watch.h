@@ -28,7 +28,7 @@ class SceneWatch {
   void stop();
 
  private:
-  void run();
+  void run(FileWatch& files);
   bool serve(const Message& wish, const Origin& origin);
   std::vector<std::string> scenes() const;
   void refuse(const Message& wish, const Origin& origin, const std::string& why);

@@ -22,4 +22,14 @@ inline Vec3 hsb_of(const Vec3& rgb) {
   return {sixth / 6 - std::floor(sixth / 6), range / most, most};
 }
 
+/// From hue, saturation, brightness (0 .. 1).
+inline Vec3 rgb_of(const Vec3& hsb) {
+  const auto channel = [&](double turn) {
+    const double h = (hsb.x + turn - std::floor(hsb.x + turn)) * 6;
+    return hsb.z * (1 - hsb.y * std::clamp(2 - std::abs(h - 3), 0.0, 1.0));
+  };
+  // red is furthest from the middle of its circle at hue 0
+  return {channel(0), channel(2.0 / 3), channel(1.0 / 3)};
+}
+
 }  // namespace limber

@@ -73,6 +73,7 @@ class Applying {
     const Visuals& drawn = a_.draft.visuals();
     set_rows(drawn.id(), a_.world.visuals().id(), a_.difference.visuals);
     set_rows(drawn.camera().id(), a_.world.visuals().camera().id(), a_.difference.camera);
+    set_rows(drawn.look().id(), a_.world.visuals().look().id(), a_.difference.look);
     remove_bodies(things);
     shapes(things);
     bodies(things);

@@ -110,6 +110,7 @@ Description describe(const World& world) {
   out.world = rows_of(world.store(), world.id());
   out.visuals = rows_of(world.store(), world.visuals().id());
   out.camera = rows_of(world.store(), world.visuals().camera().id());
+  out.look = rows_of(world.store(), world.visuals().look().id());
   Shapes shapes;
   for (const auto& shape : world.shapes()) {
     out.shapes.push_back(describe_shape(world.store(), *shape));

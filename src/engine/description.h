@@ -85,6 +85,7 @@ struct Description {
   SaidRows world;
   SaidRows visuals;
   SaidRows camera;
+  SaidRows look;
   std::vector<std::shared_ptr<const ShapeDescription>> shapes;
   std::vector<BodyDescription> bodies;
   std::vector<GroupDescription> groups;

@@ -222,7 +222,7 @@ bool Difference::empty() const {
   const auto all_same = [&](const auto& list) { return std::all_of(list.begin(), list.end(), same); };
   return !other_order && gone_behaviors.empty() && gone_groups.empty() && all_same(groups) &&
          std::all_of(behaviors.begin(), behaviors.end(), all_same) && world == 0 && visuals == 0 && camera == 0 &&
-         shapes.empty() && bodies.empty() && gone_shapes.empty() && gone_bodies.empty() &&
+         look == 0 && shapes.empty() && bodies.empty() && gone_shapes.empty() && gone_bodies.empty() &&
          std::all_of(shapes_before.begin(), shapes_before.end(), there) &&
          std::all_of(bodies_before.begin(), bodies_before.end(), there);
 }
@@ -292,6 +292,7 @@ Difference compare(const Description& before, const Description& now) {
   out.world = changed_rows(before.world, now.world);
   out.visuals = changed_rows(before.visuals, now.visuals);
   out.camera = changed_rows(before.camera, now.camera);
+  out.look = changed_rows(before.look, now.look);
   out.shapes_before = match(
       before.shapes, now.shapes, [](const auto& s) { return std::string_view(s->name); }, out.gone_shapes);
   out.bodies_before = match(

@@ -47,7 +47,8 @@ struct BehaviorDifference {
 struct Difference {
   std::uint64_t world = 0;                                ///< Rows of the world to be set.
   std::uint64_t visuals = 0;                              ///< Of the picture's background,
-  std::uint64_t camera = 0;                               ///< of its camera.
+  std::uint64_t camera = 0;                               ///< of its camera,
+  std::uint64_t look = 0;                                 ///< of its look.
   std::vector<std::optional<std::size_t>> shapes_before;  ///< For each shape now, which one it was.
   std::vector<std::optional<std::size_t>> bodies_before;
   std::vector<ShapeDifference> shapes;  ///< Those that were there and are told differently.

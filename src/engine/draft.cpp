@@ -32,6 +32,7 @@ void Draft::find_spots() {
   put(world_.id(), Kind::world, 0);
   put(world_.visuals().id(), Kind::visuals, 0);
   put(world_.visuals().camera().id(), Kind::camera, 0);
+  put(world_.visuals().look().id(), Kind::look, 0);
   for (std::size_t i = 0; i < world_.shapes().size(); i++) put(world_.shapes()[i]->id(), Kind::shape, i);
   for (std::size_t i = 0; i < world_.bodies().size(); i++) {
     const Body& body = *world_.bodies()[i];
@@ -52,6 +53,7 @@ NodeId Draft::live_id(NodeId id, const World& live, const std::vector<NodeId>& s
   if (spot.kind == Kind::world) return live.id();
   if (spot.kind == Kind::visuals) return live.visuals().id();
   if (spot.kind == Kind::camera) return live.visuals().camera().id();
+  if (spot.kind == Kind::look) return live.visuals().look().id();
   if (spot.kind == Kind::shape) return shapes[spot.owner];
   if (spot.kind == Kind::group) {
     const BehaviorGroup* const group = live.behaviors().find_group(description_->groups[spot.number].name);

@@ -48,7 +48,20 @@ class Draft {
                  const std::vector<NodeId>& bodies) const;
 
  private:
-  enum class Kind : std::uint8_t { none, world, visuals, camera, shape, body, part, joint, motor, behavior, group };
+  enum class Kind : std::uint8_t {
+    none,
+    world,
+    visuals,
+    camera,
+    look,
+    shape,
+    body,
+    part,
+    joint,
+    motor,
+    behavior,
+    group
+  };
   struct Spot {  // what a slot of the store is
     Kind kind = Kind::none;
     std::uint32_t owner = 0;  // number of the body or shape

@@ -32,6 +32,7 @@ void Publisher::renew_roster() {
 void Publisher::publish(bool paused, double speed_reached) {
   if (roster_ == nullptr || structure_ != world_.store().structure_version()) {
     renew_roster();
+    drawing_ = std::make_shared<const Drawing>(world_);
     structure_ = world_.store().structure_version();
   }
   const std::shared_ptr<Snapshot> snapshot = out_.spare();
@@ -42,6 +43,12 @@ void Publisher::publish(bool paused, double speed_reached) {
   snapshot->roster = roster_;
   const std::span<const double> live = world_.store().live();
   snapshot->live.assign(live.begin(), live.end());
+  const std::uint64_t version = world_.store().kept_version();
+  if (snapshot->drawing != drawing_ || snapshot->visuals_version != version) {
+    drawing_->copy_visuals(world_.store().kept(), snapshot->visuals);
+    snapshot->drawing = drawing_;
+    snapshot->visuals_version = version;
+  }
   out_.publish(snapshot);
 }
 

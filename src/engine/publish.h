@@ -21,6 +21,7 @@ class Publisher {
   World& world_;
   Latest<Snapshot>& out_;
   std::shared_ptr<const Roster> roster_;
+  std::shared_ptr<const Drawing> drawing_;
   std::uint64_t structure_ = 0;
 };
 

@@ -6,6 +6,8 @@
 #include <string>
 #include <vector>
 
+#include "engine/drawing.h"
+
 namespace limber {
 
 /// A body in a snapshot. Its joints stand in stream order.
@@ -40,6 +42,9 @@ struct Snapshot {
   bool paused = false;
   std::shared_ptr<const Roster> roster;
   std::vector<double> live;  ///< States and readouts of every node, as the store has them.
+  std::shared_ptr<const Drawing> drawing;
+  std::vector<double> visuals;        ///< For material_of(), camera_of(), look_of().
+  std::uint64_t visuals_version = 0;  ///< Of one drawing: another when `visuals` may be.
 };
 
 }  // namespace limber

@@ -24,8 +24,9 @@ namespace {
 constexpr std::size_t kWidth = 116;  // of a line of names
 
 const Table& table_named(std::string_view name) {
-  const std::array<const Table*, 8> classes = {&World::table(), &Body::table(),  &Part::table(),    &Joint::table(),
-                                               &Motor::table(), &Shape::table(), &Visuals::table(), &Camera::table()};
+  const std::array<const Table*, 9> classes = {&World::table(),   &Body::table(),   &Part::table(),
+                                               &Joint::table(),   &Motor::table(),  &Shape::table(),
+                                               &Visuals::table(), &Camera::table(), &Look::table()};
   for (const Table* table : classes) {
     if (table->name() == name) return *table;
   }

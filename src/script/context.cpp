@@ -135,6 +135,7 @@ std::string label_of(const ScriptContext& c, NodeId id) {
   if (table == &World::table()) return "sim";
   if (table == &Visuals::table()) return "visuals";
   if (table == &Camera::table()) return "visuals.camera";
+  if (table == &Look::table()) return "visuals.look";
   const std::string& name = store.name(id);
   if (table == &Body::table() || table == &Shape::table()) return fmt::format("{} '{}'", table->name(), name);
   if (group_of(c, id) != nullptr) return fmt::format("group '{}'", name);

@@ -136,6 +136,7 @@ void Vm::load_prelude(ScriptContext& context) {
   only("world", context.world->id());
   only("visuals", visuals.id());
   only("camera", visuals.camera().id());
+  only("look", visuals.look().id());
   const auto guard_function = [&](const char* name, lua_CFunction function) {
     lua_pushlightuserdata(L, &guard_);
     lua_pushcclosure(L, function, 1);

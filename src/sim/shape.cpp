@@ -40,6 +40,12 @@ Result<void> both(Result<void> a, Result<void> b) { return a ? b : a; }
 
 }  // namespace
 
+std::string visual_shape_name(const BodyModel& model, const LinkModel& link, std::size_t number) {
+  std::string name = fmt::format("{}.{}", model.name, link.name);
+  if (number > 0) name += fmt::format(".{}", number + 1);
+  return name;
+}
+
 Result<void> check_shape(const ShapeModel& m) {
   switch (m.kind) {
     case ShapeKind::plane:

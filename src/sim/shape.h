@@ -48,6 +48,9 @@ class Shape {
   mutable std::shared_ptr<const Geometry> geometry_;
 };
 
+/// What the shape of a link's visual is called: `<robot>.<link>`, a second `<robot>.<link>.2`, and so on.
+std::string visual_shape_name(const BodyModel& model, const LinkModel& link, std::size_t number);
+
 /// What is wrong with a shape's numbers ("a sphere needs a radius of 1e-4 .. 1e4 m, not -1"), or success.
 Result<void> check_shape(const ShapeModel& model);
 

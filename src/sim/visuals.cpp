@@ -101,15 +101,17 @@ void Camera::write_target(const double* in) { look_at(eye(), {in[0], in[1], in[2
 const Table& Visuals::table() {
   static const Table table(
       "visuals", "/visuals", "",
-      {vec3("background", "hsb", {0.62, 0.45, 0.06}, 0, 1, "Behind everything, as hue, saturation, brightness.")});
+      {vec3("background", "hsb", {0.62, 0.45, 0.06}, 0, 1,
+            "Behind everything, as hue, saturation, brightness; the default: as the look has it.")});
   return table;
 }
 
 Visuals::Visuals(Store& store)
-    : store_(store), id_(store.add(table(), store.root(), "visuals", this)), camera_(store, id_) {}
+    : store_(store), id_(store.add(table(), store.root(), "visuals", this)), camera_(store, id_), look_(store, id_) {}
 
 void Visuals::clear() {
-  for (const auto& [id, rows] : {std::pair{id_, table().rows()}, {camera_.id(), Camera::table().rows()}}) {
+  for (const auto& [id, rows] :
+       {std::pair{id_, table().rows()}, {camera_.id(), Camera::table().rows()}, {look_.id(), Look::table().rows()}}) {
     for (const Row& row : rows) {
       if (row.stored()) (void)store_.set(id, row, {row.initial.data(), row.width});
     }

@@ -1,9 +1,10 @@
-// Visuals: what the picture is drawn with beside the shapes' materials: the background and the camera. Nothing here
-// draws. [sim]
+// Visuals: what the picture is drawn with beside the shapes' materials: the background, the camera, the look. Nothing
+// here draws. [sim]
 #pragma once
 
 #include "base/vec.h"
 #include "params/store.h"
+#include "sim/look.h"
 
 namespace limber {
 
@@ -41,6 +42,7 @@ class Visuals {
   NodeId id() const { return id_; }
   Camera& camera() { return camera_; }
   const Camera& camera() const { return camera_; }
+  const Look& look() const { return look_; }
   /// Back to the defaults.
   void clear();
 
@@ -48,6 +50,7 @@ class Visuals {
   Store& store_;
   NodeId id_;
   Camera camera_;
+  Look look_;
 };
 
 }  // namespace limber

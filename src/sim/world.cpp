@@ -285,7 +285,7 @@ std::uint64_t World::state_hash() const {
     const auto* kept = reinterpret_cast<const char*>(std::as_const(store_).kept_block(id));
     hash = hash_bytes({kept, store_.table(id).kept_width() * sizeof(double)}, hash);
   };
-  for (const NodeId id : {id_, visuals_->id(), visuals_->camera().id()}) add_kept(id);
+  for (const NodeId id : {id_, visuals_->id(), visuals_->camera().id(), visuals_->look().id()}) add_kept(id);
   for (const auto& shape : shapes_) add_kept(shape->id());
   const double moment[] = {time(), static_cast<double>(tick_), static_cast<double>(seed())};
   hash = hash_bytes({reinterpret_cast<const char*>(moment), sizeof moment}, hash);

@@ -61,8 +61,8 @@ class World {
   Shape* find_shape(std::string_view name) const;
   std::span<const std::unique_ptr<Shape>> shapes() const { return shapes_; }
 
-  /// A shape for each of the model's visuals, with its colour: `<robot>.<link>`, a link's second `<robot>.<link>.2`,
-  /// and so on. Those that are there already are left as they are: all bodies of the model share them.
+  /// A shape for each of the model's visuals (visual_shape_name), with its colour. Those that are there already are
+  /// left as they are: all bodies of the model share them.
   void add_shapes_of(const BodyModel& model);
   void remove_shape(Shape& shape);
   /// The shape of that name as one of another world.

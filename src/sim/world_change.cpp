@@ -53,8 +53,7 @@ void World::add_shapes_of(const BodyModel& model) {
   for (const LinkModel& link : model.links) {
     for (std::size_t i = 0; i < link.visuals.size(); i++) {
       const PlacedShape& visual = link.visuals[i];
-      std::string name = fmt::format("{}.{}", model.name, link.name);
-      if (i > 0) name += fmt::format(".{}", i + 1);
+      std::string name = visual_shape_name(model, link, i);
       if (find_shape(name) != nullptr) continue;
       if (const Result<Shape*> shape = add_shape(std::move(name), visual.shape)) (*shape)->paint(visual);
     }

@@ -56,6 +56,7 @@ constexpr std::array kLibraries{
     Library{"epoxy/", "view"},
     Library{"GL/", "view"},
     Library{"EGL/", "view"},
+    Library{"stb_", "view"},
     Library{"imgui", "gui"},
     Library{"GLFW/", "app"},
     Library{"CLI/", "app"},

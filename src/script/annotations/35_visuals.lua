@@ -1,9 +1,10 @@
 -- What the picture is drawn with.
 
----The picture: its background, the camera, the materials of the shapes.
+---The picture: its background, the camera, the look, the materials of the shapes.
 ---@class visuals
 ---@field alive boolean # read-only. Always true.
 ---@field camera camera # read-only.
+---@field look look # read-only.
 ---@rows visuals
 visuals = {}
 
@@ -30,3 +31,9 @@ function camera_:look_at(eye, target, seconds) end
 ---change them. nil: goes with nothing.
 ---@param thing body|part|nil
 function camera_:follow(thing) end
+
+---How the picture is lit, and its stage.
+---@class look
+---@field alive boolean # read-only. Always true.
+---@rows look
+local look_ = {}

@@ -11,7 +11,7 @@ function P.add_class(class) by_table[class.table], by_ctype[tonumber(class.ctype
 -- behaviours have a table each type: their classes are made when they are met (55_behaviors.lua)
 local function class_of_table(number) return by_table[number] or P.make_class(number) end
 P.class_of_table = class_of_table
-for i, name in ipairs { "sim", "body", "part", "joint", "motor", "shape", "visuals", "camera" } do
+for i, name in ipairs { "sim", "body", "part", "joint", "motor", "shape", "visuals", "camera", "look" } do
   local class = { name = name, ctype = ffi.typeof(name), getters = {}, setters = {}, methods = {}, rows = {} }
   class.number = i - 1
   classes[name], by_ctype[tonumber(class.ctype)] = class, class
@@ -26,7 +26,8 @@ function P.number_classes()
 end
 P.number_classes()
 -- what errors call those of which there is one
-classes.sim.only, classes.visuals.only, classes.camera.only = "sim", "visuals", "visuals.camera"
+classes.sim.only, classes.visuals.only = "sim", "visuals"
+classes.camera.only, classes.look.only = "visuals.camera", "visuals.look"
 
 -- handles: one for each slot, so that a thing is always the same key of a table; names stay for the gone ones
 local handles = {}

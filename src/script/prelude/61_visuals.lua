@@ -1,13 +1,14 @@
--- `visuals`: what the picture is drawn with: its background, the camera, the shapes' materials.
+-- `visuals`: what the picture is drawn with: its background, the camera, the look, the shapes' materials.
 local P = ...
 local api, ctx = P.api, P.ctx
 local fail, describe, classes = P.fail, P.describe, P.classes
-local class, camera = classes.visuals, classes.camera
+local class, camera, look = classes.visuals, classes.camera, classes.look
 local shapes = 4
 
 P.derive(class)
 P.derive(camera)
-class.getters.alive, camera.getters.alive = P.alive, P.alive
+P.derive(look)
+class.getters.alive, camera.getters.alive, look.getters.alive = P.alive, P.alive, P.alive
 
 class.methods.shape = function(h, key)
   P.check_self(h, class, "shape")
@@ -59,7 +60,10 @@ end
 
 local the_camera = P.thing(P.camera_slot, P.camera_generation)
 class.getters.camera = function() return the_camera end
+local the_look = P.thing(P.look_slot, P.look_generation)
+class.getters.look = function() return the_look end
 
 P.finish(class)
 P.finish(camera)
+P.finish(look)
 P.visuals = P.thing(P.visuals_slot, P.visuals_generation)

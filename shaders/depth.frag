@@ -1,0 +1,2 @@
+// Depth alone: the lamp's map, and that of what stands above the floor.
+void main() {}

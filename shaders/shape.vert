@@ -1,0 +1,27 @@
+// Every shape by one formula: a corner stretched to its size, rounded by its normal; then turned and put in its place.
+layout(location = 0) in vec3 corner;
+layout(location = 1) in vec3 normal;
+layout(location = 2) in vec4 place;    // w: round
+layout(location = 3) in vec4 turn;     // x y z w
+layout(location = 4) in vec4 extent;   // w: specular
+layout(location = 5) in vec4 diffuse;  // w: alpha
+layout(location = 6) in vec4 ambient;  // w: power
+
+out vec3 at;
+out vec3 facing;
+flat out vec4 v_diffuse;
+flat out vec4 v_ambient;
+flat out float v_specular;
+
+vec3 turned(vec3 v) { return v + 2.0 * cross(turn.xyz, cross(turn.xyz, v) + turn.w * v); }
+
+void main() {
+  at = place.xyz + turned(corner * extent.xyz + normal * place.w);
+  // what is not round is stretched: its normals the other way
+  facing = turned(place.w > 0.0 ? normal : normalize(normal / extent.xyz));
+  v_diffuse = diffuse;
+  v_ambient = ambient;
+  v_specular = extent.w;
+  gl_Position = view_proj * vec4(at, 1.0);
+  gl_ClipDistance[0] = at.z - tone.z;
+}

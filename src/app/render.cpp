@@ -1,0 +1,144 @@
+// One loop for stills and films: time goes on tick by tick, each frame lies between two of them.
+#include "app/render.h"
+
+#include <cmath>
+#include <cstdio>
+
+#include <fmt/format.h>
+
+#include "app/exit_code.h"
+#include "app/film_file.h"
+#include "app/paths.h"
+#include "base/clock_seconds.h"
+#include "base/text.h"
+#include "view/offscreen.h"
+
+namespace limber {
+
+namespace {
+
+constexpr double kSayEvery = 2;  // s
+
+// the two snapshots around a moment
+class Moments {
+ public:
+  Moments(Engine& engine, EngineLink& link) : engine_(engine), link_(link) { before_ = now_ = link.snapshots.read(); }
+
+  /// Ticks until there. False: time stands still.
+  bool go_to(double seconds) {
+    while (elapsed_ < seconds - 1e-9) {
+      before_ = now_;
+      engine_.tick();
+      link_.outbox.drain(gone_);
+      now_ = link_.snapshots.read();
+      // after a reset time begins anew; the film goes on
+      const double step = now_->time >= before_->time ? now_->time - before_->time : now_->time;
+      if (step <= 0 && now_->paused) return false;
+      elapsed_before_ = elapsed_;
+      elapsed_ += step;
+    }
+    return true;
+  }
+  const Snapshot& before() const { return *before_; }
+  const Snapshot& now() const { return *now_; }
+  double mix(double seconds) const {
+    const double step = elapsed_ - elapsed_before_;
+    return step <= 0 || elapsed_ - seconds < 1e-9 ? 1 : (seconds - elapsed_before_) / step;
+  }
+
+ private:
+  Engine& engine_;
+  EngineLink& link_;
+  std::shared_ptr<const Snapshot> before_, now_;
+  double elapsed_ = 0;
+  double elapsed_before_ = 0;
+  std::vector<Outgoing> gone_;  // nobody listens
+};
+
+std::string minutes(double seconds) {
+  const long s = std::lround(seconds);
+  return fmt::format("{}:{:02}", s / 60, s % 60);
+}
+
+// a line now and then
+class Progress {
+ public:
+  explicit Progress(std::uint64_t frames) : frames_(frames) {}
+  void tell(std::uint64_t done) {
+    const double now = clock_seconds();
+    if (now - said_ < kSayEvery || done == 0) return;
+    said_ = now;
+    const double rate = static_cast<double>(done) / (now - begin_);
+    fmt::print(stderr, "limber: frame {} of {}, {:.1f} a second, {} left\n", done, frames_, rate,
+               minutes(static_cast<double>(frames_ - done) / rate));
+  }
+
+ private:
+  std::uint64_t frames_;
+  double begin_ = clock_seconds();
+  double said_ = begin_;
+};
+
+Rendered failed(int code, const std::string& text) { return {fail(code, text), false}; }
+
+Rendered draw_still(const PictureOptions& options, const PictureSize& size, Renderer& renderer, Moments& moments) {
+  const double at = options.at.value_or(0);
+  if (!moments.go_to(at)) return failed(kInput, "time stands still: the scene is paused before --at");
+  if (const auto drawn = renderer.draw(moments.before(), moments.now(), moments.mix(at), size.width, size.height);
+      !drawn)
+    return failed(kMachine, drawn.error());
+  if (const auto written = write_png(renderer.read(), options.screenshot); !written)
+    return failed(kInput, written.error());
+  fmt::print(stderr, "limber: {}: {} × {}, at {} s\n", printable(options.screenshot), size.width, size.height,
+             number_text(at));
+  return {};
+}
+
+Rendered draw_film(const PictureOptions& options, const PictureSize& size, Renderer& renderer, Moments& moments,
+                   double duration, const std::function<bool()>& cancel) {
+  const double fps = options.fps.value_or(60);
+  const auto frames = static_cast<std::uint64_t>(std::max(std::llround(duration * fps), 1LL));
+  Result<std::unique_ptr<FilmFile>> film = FilmFile::open(options.render, size.width, size.height, fps);
+  if (!film) return failed(kMachine, film.error());
+  Progress progress(frames);
+  std::uint64_t done = 0;
+  bool cancelled = false;
+  for (; done < frames && !cancelled; done++) {
+    const double at = static_cast<double>(done) / fps;
+    if (!moments.go_to(at))
+      return failed(kInput, fmt::format("time stands still: the scene is paused at {:.2f} s", at));
+    if (const auto drawn = renderer.draw(moments.before(), moments.now(), moments.mix(at), size.width, size.height);
+        !drawn)
+      return failed(kMachine, drawn.error());
+    if (const auto added = (*film)->add(renderer.read()); !added) return failed(kMachine, added.error());
+    progress.tell(done + 1);
+    cancelled = cancel();
+  }
+  if (const auto whole = (*film)->finish(); !whole) return failed(kMachine, whole.error());
+  fmt::print(stderr, "limber: {}: {} frames, {} × {}, {} a second{}\n", printable(options.render), done, size.width,
+             size.height, number_text(fps), done < frames ? fmt::format("; cancelled, {} were asked for", frames) : "");
+  // to the end, as a run of that duration goes
+  if (!cancelled && !moments.go_to(duration)) return failed(kInput, "time stands still: the scene is paused");
+  return {kFine, cancelled};
+}
+
+}  // namespace
+
+Rendered render(const PictureOptions& options, Engine& engine, EngineLink& link, std::optional<double> duration,
+                const std::function<bool()>& cancel) {
+  const Result<PictureSize> size = picture_size(options);
+  if (!size) return failed(kUsage, size.error());
+  const Result<std::unique_ptr<Offscreen>> context = Offscreen::make();
+  if (!context) return failed(kMachine, context.error());
+  const Quality quality = picture_quality(options, Quality::high);
+  const Result<std::unique_ptr<Renderer>> renderer = Renderer::make(shader_dir(), quality);
+  if (!renderer) return failed(kMachine, renderer.error());
+  fmt::print(stderr, "limber: drawn by {}\n", gl_driver());
+  if (gl_is_software() && quality != Quality::low && !options.render.empty())
+    fmt::print(stderr, "limber: that is software, and takes its time; --quality low is several times faster\n");
+  Moments moments(engine, link);
+  if (options.render.empty()) return draw_still(options, *size, **renderer, moments);
+  return draw_film(options, *size, **renderer, moments, duration.value_or(0), cancel);
+}
+
+}  // namespace limber

@@ -1,0 +1,69 @@
+// Window: one window with OpenGL and what hands do in it, through GLFW. Presses shorter than a frame are not lost.
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "base/result.h"
+
+struct GLFWwindow;
+
+namespace limber {
+
+enum class Key : std::uint8_t { space, period, home, full_screen };
+
+/// What a mouse has done since the last look: pixels of the window, steps of the wheel.
+struct MouseMoves {
+  double turn_x = 0, turn_y = 0;    ///< Left button held.
+  double shift_x = 0, shift_y = 0;  ///< Right or middle button, or left with Shift.
+  double wheel = 0;                 ///< Up is positive.
+  bool any() const { return turn_x != 0 || turn_y != 0 || shift_x != 0 || shift_y != 0 || wheel != 0; }
+};
+
+class Window {
+ public:
+  /// Whether this process was told of one. [any]
+  static bool has_display();
+  /// Its context is current on this thread. An error says why there can be none. [main]
+  static Result<std::unique_ptr<Window>> open(const std::string& title, int width, int height);
+  ~Window();
+  Window(const Window&) = delete;
+  Window& operator=(const Window&) = delete;
+
+  /// Called when the display is gone: it never returns, as Xlib would end the program. [main]
+  static void on_display_lost(std::function<void()> go_on);
+
+  /// Takes what came; waits for it so many seconds at most. [main]
+  void poll(double seconds);
+  bool closed() const;
+  /// Somebody else took it away. [main]
+  bool lost() const;
+  /// Of the framebuffer, pixels; 0 while it is iconified. [main]
+  int width() const;
+  int height() const;
+  /// Of the screen that it is on, 1/s. [main]
+  double refresh_rate() const;
+  std::vector<Key> take_keys();
+  MouseMoves take_mouse();
+  void title(const std::string& text);
+  /// To the whole screen that it is on, and back. [main]
+  void toggle_full_screen();
+  void swap();
+
+ private:
+  explicit Window(GLFWwindow* window);
+  static void on_key(GLFWwindow* window, int key, int code, int action, int mods);
+  static void on_move(GLFWwindow* window, double x, double y);
+  static void on_scroll(GLFWwindow* window, double x, double y);
+
+  GLFWwindow* window_;
+  std::vector<Key> keys_;
+  MouseMoves mouse_;
+  double x_ = 0;
+  double y_ = 0;
+  int place_[4] = {0, 0, 0, 0};  // before it was full screen
+};
+
+}  // namespace limber

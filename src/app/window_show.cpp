@@ -1,0 +1,151 @@
+// The loop of a window.
+#include "app/window_show.h"
+
+#include <sys/resource.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+
+#include <fmt/format.h>
+
+#include "app/paths.h"
+#include "base/clock_seconds.h"
+#include "base/log.h"
+#include "base/text.h"
+
+namespace limber {
+
+namespace {
+
+constexpr double kLongestInterval = 0.1;  // s: what comes later is not drawn in between
+constexpr double kHandStays = 0.3;        // s after its last move, a hand's view counts, not the snapshot's
+constexpr double kShadersEvery = 0.25;    // s
+constexpr double kTurn = 2.5;             // rad for the window's height
+constexpr double kWheel = 0.88;           // of the distance, a step
+
+Orbit orbit_of(const CameraView& camera) {
+  const Lens lens = lens_of(camera, 1, 1);
+  return {lens.eye, lens.target};
+}
+
+std::vector<Arg> numbers(const Vec3& v) { return {Arg::of(v.x), Arg::of(v.y), Arg::of(v.z)}; }
+
+}  // namespace
+
+Result<std::unique_ptr<WindowShow>> WindowShow::open(const PictureOptions& options, const std::string& scene,
+                                                     EngineLink& link) {
+  // software drawing takes every core that it finds: it begins its threads from here
+  setpriority(PRIO_PROCESS, 0, 5);
+  const Result<PictureSize> size = picture_size(options);
+  if (!size) return Error{size.error()};
+  Result<std::unique_ptr<Window>> window = Window::open(fmt::format("Limber: {}", scene), size->width, size->height);
+  if (!window) return Error{window.error()};
+  const bool software = gl_is_software();
+  const Quality quality = picture_quality(options, software ? Quality::low : Quality::high);
+  Result<std::unique_ptr<Renderer>> renderer = Renderer::make(shader_dir(), quality);
+  if (!renderer) return Error{renderer.error()};
+  fmt::print(stderr, "limber: window {} × {}, drawn by {}\n", size->width, size->height, gl_driver());
+  if (software && options.quality.empty())
+    fmt::print(stderr, "limber: that is software, so the picture is of quality low; --quality high looks better\n");
+  return std::unique_ptr<WindowShow>(new WindowShow(std::move(*window), std::move(*renderer), scene, link));
+}
+
+void WindowShow::send(std::vector<Message> messages) {
+  link_.inbox.push({std::move(messages), Origin{Hand::panel, 0, 0, false}});
+  link_.wake_engine();
+}
+
+// a picture is drawn one interval late, so that there are two snapshots around it
+void WindowShow::look_at_snapshots(double now) {
+  const std::shared_ptr<const Snapshot> newest = link_.snapshots.read();
+  if (newest == nullptr || newest == now_) return;
+  if (now_ == nullptr) home_ = orbit_of(camera_of(*newest));
+  const bool moves = now_ != nullptr && newest->tick > now_->tick && newest->drawing == now_->drawing;
+  before_ = moves ? now_ : newest;
+  if (moves || now_ == nullptr) {
+    interval_ = std::min(now - came_, kLongestInterval);
+    came_ = now;
+  }
+  now_ = newest;
+}
+
+// each of the two points keeps the other where it is
+void WindowShow::look_from(const Orbit& orbit) {
+  send({{"/visuals/camera/eye", numbers(orbit.eye)},
+        {"/visuals/camera/target", numbers(orbit.target)},
+        {"/visuals/camera/eye", numbers(orbit.eye)}});
+}
+
+void WindowShow::hear_keys() {
+  for (const Key key : window_->take_keys()) {
+    if (key == Key::full_screen) window_->toggle_full_screen();
+    if (key == Key::space) send({{now_->paused ? "/transport/play" : "/transport/pause", {}}});
+    if (key == Key::period) send({{"/transport/step", {}}});
+    if (key == Key::home) look_from(home_);
+  }
+}
+
+void WindowShow::hear_mouse() {
+  const MouseMoves mouse = window_->take_mouse();
+  if (!mouse.any()) return;
+  const CameraView camera = camera_of(*now_);
+  const double now = clock_seconds();
+  if (now - moved_ > kHandStays) orbit_ = orbit_of(camera);
+  moved_ = now;
+  const double height = std::max(window_->height(), 1);
+  orbit_.turn(kTurn * mouse.turn_x / height, kTurn * mouse.turn_y / height);
+  orbit_.shift(mouse.shift_x / height, -mouse.shift_y / height, camera.fovy);
+  orbit_.zoom(std::pow(kWheel, mouse.wheel));
+  look_from(orbit_);
+}
+
+void WindowShow::tell_rate(double now) {
+  pictures_++;
+  if (now - told_ < 1) return;
+  window_->title(fmt::format("Limber: {}  {:.0f} pictures a second  {:.2f} × real time{}", scene_,
+                             pictures_ / (now - told_), now_->speed, now_->paused ? "  paused" : ""));
+  pictures_ = 0;
+  told_ = now;
+}
+
+WindowShow::End WindowShow::frame() {
+  // a screen that waits for nothing would be drawn without end
+  const double rate = window_->refresh_rate();
+  double now = clock_seconds();
+  const double rest = drawn_ + 0.95 / rate - now;
+  window_->poll(rest > 0.001 ? rest : 0);
+  now = clock_seconds();
+  if (window_->lost()) {
+    log_error("the window is lost; playing on headless");
+    return End::lost;
+  }
+  if (window_->closed()) return End::closed;
+  if (now < drawn_ + 0.9 / rate) return End::none;  // something came before its time
+  drawn_ = now;
+  look_at_snapshots(now);
+  if (now_ == nullptr) return End::none;
+  hear_keys();
+  hear_mouse();
+  if (now - shaders_looked_ > kShadersEvery) {
+    shaders_looked_ = now;
+    renderer_->renew_shaders();
+  }
+  const int width = window_->width();
+  const int height = window_->height();
+  if (width == 0 || height == 0) {
+    window_->poll(0.05);
+    return End::none;
+  }
+  const double mix = interval_ <= 0 ? 1 : std::clamp((now - came_) / interval_, 0.0, 1.0);
+  if (const Result<void> drawn = renderer_->draw(*before_, *now_, mix, width, height); !drawn) {
+    log_error("{}; playing on headless", drawn.error());
+    return End::lost;
+  }
+  renderer_->show(width, height);
+  window_->swap();
+  tell_rate(now);
+  return End::none;
+}
+
+}  // namespace limber

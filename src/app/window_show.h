@@ -1,0 +1,54 @@
+// WindowShow: the show in a window: draws what the snapshots say, smooth between two of them, and sends what hands do.
+#pragma once
+
+#include <memory>
+#include <string>
+
+#include "app/picture_options.h"
+#include "app/window.h"
+#include "engine/link.h"
+#include "view/lens.h"
+#include "view/renderer.h"
+
+namespace limber {
+
+class WindowShow {
+ public:
+  /// After all other threads were made: this one steps behind them, so that drawing never holds up the simulation. An
+  /// error says why there is no window. [main]
+  static Result<std::unique_ptr<WindowShow>> open(const PictureOptions& options, const std::string& scene,
+                                                  EngineLink& link);
+
+  enum class End : std::uint8_t { none, closed, lost };
+  /// What hands did, one picture, and the wait for its time. `lost`: nothing can be drawn any more, which was said.
+  /// [main]
+  End frame();
+
+ private:
+  WindowShow(std::unique_ptr<Window> window, std::unique_ptr<Renderer> renderer, std::string scene, EngineLink& link)
+      : window_(std::move(window)), renderer_(std::move(renderer)), scene_(std::move(scene)), link_(link) {}
+
+  void look_at_snapshots(double now);
+  void look_from(const Orbit& orbit);
+  void hear_keys();
+  void hear_mouse();
+  void send(std::vector<Message> messages);
+  void tell_rate(double now);
+
+  std::unique_ptr<Window> window_;
+  std::unique_ptr<Renderer> renderer_;  // before its context goes
+  std::string scene_;
+  EngineLink& link_;
+  std::shared_ptr<const Snapshot> before_, now_;
+  double came_ = 0;      // when now_ was seen, s
+  double interval_ = 0;  // between the two, s
+  Orbit orbit_;          // while a hand moves it
+  Orbit home_;           // as it was at first
+  double moved_ = -1;    // when one did last, s
+  double drawn_ = 0;     // when the last picture began, s
+  double told_ = 0;
+  double shaders_looked_ = 0;
+  int pictures_ = 0;  // since told_
+};
+
+}  // namespace limber

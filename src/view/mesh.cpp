@@ -1,0 +1,250 @@
+// Surfaces of revolution, the box, and files' triangles with normals and coarser copies.
+#include "view/mesh.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <map>
+#include <numbers>
+#include <tuple>
+#include <utility>
+
+namespace limber {
+
+namespace {
+
+constexpr double kCrease = 0.82;             // cosine of 35°: normals are shared below it
+constexpr std::size_t kMostNeighbours = 64;  // triangles at a vertex that are looked at one by one
+
+struct Point {
+  Vec3 corner;
+  Vec3 normal;
+};
+
+MeshVertex vertex_of(const Point& p) {
+  const auto f = [](double v) { return static_cast<float>(v); };
+  return {{f(p.corner.x), f(p.corner.y), f(p.corner.z)}, {f(p.normal.x), f(p.normal.y), f(p.normal.z)}};
+}
+
+void add_quad(MeshVertices& out, const Point& a, const Point& b, const Point& c, const Point& d) {
+  for (const Point* p : {&a, &b, &c, &a, &c, &d}) out.push_back(vertex_of(*p));
+}
+
+// one point of a profile: distance from the axis and height of the corner, and of the normal
+struct Rim {
+  double corner_r, corner_z, normal_r, normal_z;
+};
+
+// turns a profile, from top to bottom, about z
+MeshVertices turned(const std::vector<Rim>& profile, int around) {
+  MeshVertices out;
+  const auto at = [&](const Rim& rim, int step) {
+    const double angle = 2 * std::numbers::pi * step / around;
+    const double x = std::cos(angle);
+    const double y = std::sin(angle);
+    return Point{{rim.corner_r * x, rim.corner_r * y, rim.corner_z},
+                 {rim.normal_r * x, rim.normal_r * y, rim.normal_z}};
+  };
+  for (std::size_t i = 0; i + 1 < profile.size(); i++) {
+    for (int k = 0; k < around; k++) {
+      const Rim& up = profile[i];
+      const Rim& down = profile[i + 1];
+      add_quad(out, at(down, k), at(down, k + 1), at(up, k + 1), at(up, k));
+    }
+  }
+  return out;
+}
+
+// a quarter circle of normals from straight up to straight out, or on from there down, about one corner
+void add_quarter(std::vector<Rim>& profile, double corner_r, double corner_z, bool lower, int steps) {
+  for (int i = 0; i <= steps; i++) {
+    const double angle = std::numbers::pi / 2 * (static_cast<double>(i) / steps + (lower ? 1 : 0));
+    profile.push_back({corner_r, corner_z, std::sin(angle), std::cos(angle)});
+  }
+}
+
+MeshVertices round_mesh(ShapeKind kind, int detail) {
+  const int around = std::array{40, 20, 12}[static_cast<std::size_t>(detail)];
+  const int quarter = std::array{10, 5, 3}[static_cast<std::size_t>(detail)];
+  const int bevel = std::array{3, 2, 1}[static_cast<std::size_t>(detail)];
+  std::vector<Rim> profile;
+  if (kind == ShapeKind::sphere || kind == ShapeKind::capsule) {
+    const double end = kind == ShapeKind::capsule ? 1 : 0;
+    add_quarter(profile, 0, end, false, quarter);
+    add_quarter(profile, 0, -end, true, quarter);
+    return turned(profile, around);
+  }
+  if (kind == ShapeKind::cylinder) {
+    profile.push_back({0, 1, 0, 1});
+    add_quarter(profile, 1, 1, false, bevel);
+    add_quarter(profile, 1, -1, true, bevel);
+    profile.push_back({0, -1, 0, -1});
+    return turned(profile, around);
+  }
+  // a cone: its tip has the normals of its sides; the shader turns them for its proportions
+  profile = {{0, 1, 1, 0.5}, {1, -1, 1, 0.5}};
+  MeshVertices out = turned(profile, around);
+  const MeshVertices bottom = turned({{1, -1, 0, -1}, {0, -1, 0, -1}}, around);
+  out.insert(out.end(), bottom.begin(), bottom.end());
+  return out;
+}
+
+// a cube whose edges and corners are rounded: each face is a grid whose outer rows bend over the bevel
+MeshVertices box_mesh(int detail) {
+  const int steps = std::array{3, 2, 1}[static_cast<std::size_t>(detail)];
+  // along one axis of a face: corners at -1 and 1, the normal's tangent between -45° and 45°
+  std::vector<std::pair<double, double>> line;
+  for (const double side : {-1.0, 1.0}) {
+    for (int i = 0; i <= steps; i++) {
+      const double t = side < 0 ? 1 - static_cast<double>(i) / steps : static_cast<double>(i) / steps;
+      line.emplace_back(side, side * std::tan(std::numbers::pi / 4 * t));
+    }
+  }
+  MeshVertices out;
+  for (int axis = 0; axis < 3; axis++) {
+    for (const double side : {-1.0, 1.0}) {
+      const auto at = [&](std::size_t i, std::size_t k) {
+        Point p;
+        const int u = (axis + 1) % 3;
+        const int v = (axis + 2) % 3;
+        p.corner[axis] = side;
+        p.corner[u] = line[i].first;
+        p.corner[v] = line[k].first;
+        p.normal[axis] = side;
+        p.normal[u] = line[i].second;
+        p.normal[v] = line[k].second;
+        p.normal = normalized(p.normal);
+        return p;
+      };
+      for (std::size_t i = 0; i + 1 < line.size(); i++) {
+        for (std::size_t k = 0; k + 1 < line.size(); k++) {
+          if (side > 0) {
+            add_quad(out, at(i, k), at(i + 1, k), at(i + 1, k + 1), at(i, k + 1));
+          } else {
+            add_quad(out, at(i, k), at(i, k + 1), at(i + 1, k + 1), at(i + 1, k));
+          }
+        }
+      }
+    }
+  }
+  return out;
+}
+
+struct Soup {
+  std::vector<Vec3> points;
+  std::vector<std::array<unsigned, 3>> triangles;
+};
+
+Soup soup_of(const MeshModel& model) {
+  Soup soup{model.vertices, {}};
+  const auto count = static_cast<unsigned>(model.vertices.size());
+  for (std::size_t i = 0; i + 2 < model.triangles.size(); i += 3) {
+    const std::array<unsigned, 3> t = {model.triangles[i], model.triangles[i + 1], model.triangles[i + 2]};
+    if (t[0] < count && t[1] < count && t[2] < count) soup.triangles.push_back(t);
+  }
+  return soup;
+}
+
+// points of one cell become their mean; triangles that collapse go
+Soup gathered(const Soup& fine, int cells) {
+  Vec3 low(1e300);
+  Vec3 high(-1e300);
+  for (const Vec3& p : fine.points) {
+    low = glm::min(low, p);
+    high = glm::max(high, p);
+  }
+  const Vec3 size = high - low;
+  const double cell = std::max({size.x, size.y, size.z, 1e-12}) / cells;
+  Soup out;
+  std::map<std::tuple<int, int, int>, unsigned> cell_of;
+  std::vector<unsigned> now(fine.points.size());
+  std::vector<double> count;
+  for (std::size_t i = 0; i < fine.points.size(); i++) {
+    const Vec3 q = (fine.points[i] - low) / cell + 0.5;
+    const auto key = std::tuple(static_cast<int>(q.x), static_cast<int>(q.y), static_cast<int>(q.z));
+    const auto [found, fresh] = cell_of.try_emplace(key, static_cast<unsigned>(out.points.size()));
+    if (fresh) {
+      out.points.emplace_back(0);
+      count.push_back(0);
+    }
+    now[i] = found->second;
+    out.points[now[i]] += fine.points[i];
+    count[now[i]] += 1;
+  }
+  for (std::size_t i = 0; i < out.points.size(); i++) out.points[i] /= count[i];
+  for (const auto& t : fine.triangles) {
+    const std::array<unsigned, 3> moved = {now[t[0]], now[t[1]], now[t[2]]};
+    if (moved[0] != moved[1] && moved[1] != moved[2] && moved[0] != moved[2]) out.triangles.push_back(moved);
+  }
+  return out;
+}
+
+}  // namespace
+
+MeshVertices primitive_mesh(ShapeKind kind, int detail) {
+  switch (kind) {
+    case ShapeKind::box:
+      return box_mesh(detail);
+    case ShapeKind::sphere:
+    case ShapeKind::capsule:
+    case ShapeKind::cylinder:
+    case ShapeKind::cone:
+      return round_mesh(kind, detail);
+    default:
+      return {};
+  }
+}
+
+MeshVertices model_mesh(const MeshModel& model, int detail) {
+  Soup soup = soup_of(model);
+  if (detail > 0 && soup.triangles.size() > 200) soup = gathered(soup, detail == 1 ? 16 : 8);
+  std::vector<Vec3> flat;
+  std::vector<std::vector<unsigned>> touching(soup.points.size());
+  flat.reserve(soup.triangles.size());
+  for (const auto& t : soup.triangles) {
+    const Vec3 along = soup.points[t[1]] - soup.points[t[0]];
+    for (const unsigned corner : t) touching[corner].push_back(static_cast<unsigned>(flat.size()));
+    flat.push_back(glm::cross(along, soup.points[t[2]] - soup.points[t[0]]));  // its length: the area counts
+  }
+  MeshVertices out;
+  out.reserve(3 * soup.triangles.size());
+  for (std::size_t i = 0; i < soup.triangles.size(); i++) {
+    const Vec3 own = normalized(flat[i]);
+    for (const unsigned corner : soup.triangles[i]) {
+      Vec3 sum = flat[i];
+      if (touching[corner].size() <= kMostNeighbours) {
+        for (const unsigned other : touching[corner]) {
+          if (other != i && glm::dot(own, normalized(flat[other])) > kCrease) sum += flat[other];
+        }
+      }
+      out.push_back(vertex_of({soup.points[corner], normalized(sum)}));
+    }
+  }
+  return out;
+}
+
+MeshSize mesh_size(const ShapeModel& shape) {
+  const double r = shape.radius;
+  const double half = shape.height / 2;
+  switch (shape.kind) {
+    case ShapeKind::box: {
+      const double least = std::min({shape.size.x, shape.size.y, shape.size.z});
+      const double round = std::min(0.08 * least, 0.02);
+      return {shape.size / 2.0 - Vec3(round), round};
+    }
+    case ShapeKind::sphere:
+      return {Vec3(0), r};
+    case ShapeKind::capsule:
+      return {Vec3(0, 0, half), r};
+    case ShapeKind::cylinder: {
+      const double round = std::min({0.1 * r, 0.1 * half, 0.015});
+      return {Vec3(r - round, r - round, half - round), round};
+    }
+    case ShapeKind::cone:
+      return {Vec3(r, r, half), 0};
+    default:
+      return {};
+  }
+}
+
+}  // namespace limber

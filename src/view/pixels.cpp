@@ -1,0 +1,40 @@
+// PNG by stb.
+#include "view/pixels.h"
+
+#include <cerrno>
+#include <cstdio>
+#include <cstring>
+
+#include <fmt/format.h>
+#include <stb_image_write.h>
+
+#include "base/text.h"
+
+namespace limber {
+
+Result<void> write_png(const Pixels& pixels, const std::string& file) {
+  const std::string beside = file + ".part";
+  std::FILE* const out = std::fopen(beside.c_str(), "wb");
+  const auto fault = [&] {
+    return Error{fmt::format("'{}' can't be written: {}", printable(file), std::strerror(errno))};
+  };
+  if (out == nullptr) return fault();
+  struct Sink {
+    std::FILE* out;
+    bool good = true;
+  } sink{out};
+  const auto write = [](void* to, void* data, int size) {
+    auto& s = *static_cast<Sink*>(to);
+    const auto count = static_cast<std::size_t>(size);
+    s.good = s.good && std::fwrite(data, 1, count, s.out) == count;
+  };
+  const int made =
+      stbi_write_png_to_func(write, &sink, pixels.width, pixels.height, 4, pixels.bytes.data(), 4 * pixels.width);
+  const bool closed = std::fclose(out) == 0;
+  if (made != 0 && sink.good && closed && std::rename(beside.c_str(), file.c_str()) == 0) return {};
+  const Error why = fault();
+  std::remove(beside.c_str());
+  return why;
+}
+
+}  // namespace limber

@@ -1,0 +1,346 @@
+// The passes of a picture: the lamp's map, the floor's, the mirrored world, floor, shapes, background, glass.
+#include "view/renderer.h"
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+
+#include <fmt/format.h>
+#include <glm/gtc/matrix_transform.hpp>
+#include <glm/gtc/type_ptr.hpp>
+
+namespace limber {
+
+/// What a quality means.
+struct Renderer::Grade {
+  int samples;  // of a pixel
+  int shadow_taps;
+  int contact_taps;
+  int dither;
+  int lamp_map;
+  int ground_map;
+  int coarser;
+  bool mirror;
+};
+
+namespace {
+
+constexpr float kLying = 0.9999F;  // of a normal upwards: planes this near to lying are floors
+
+const void* offset(std::size_t bytes) { return reinterpret_cast<const void*>(bytes); }
+
+void describe_instance(std::size_t first) {
+  constexpr std::array<std::size_t, 5> kAt = {offsetof(Instance, place), offsetof(Instance, turn),
+                                              offsetof(Instance, extent), offsetof(Instance, diffuse),
+                                              offsetof(Instance, ambient)};
+  for (std::size_t i = 0; i < kAt.size(); i++) {
+    glVertexAttribPointer(static_cast<GLuint>(2 + i), 4, GL_FLOAT, GL_FALSE, sizeof(Instance),
+                          offset(first * sizeof(Instance) + kAt[i]));
+  }
+}
+
+}  // namespace
+
+Renderer::Renderer(std::string shader_folder, const Grade& grade, std::string defines)
+    : grade_(grade),
+      shaders_(std::move(shader_folder), std::move(defines)),
+      instances_(GlBuffer::make()),
+      frame_(GlBuffer::make()),
+      nothing_(GlVertexArray::make()),
+      lamp_(make_depth(grade.lamp_map, true)),
+      ground_(make_depth(grade.ground_map, false)),
+      canvas_(GlFramebuffer::make()),
+      resolved_(GlFramebuffer::make()),
+      color_(GlRenderbuffer::make()),
+      depth_(GlRenderbuffer::make()),
+      picture_(GlRenderbuffer::make()) {
+  glGetIntegerv(GL_MAX_RENDERBUFFER_SIZE, &largest_);
+  largest_ = std::min(largest_, 16384);
+}
+
+Result<std::unique_ptr<Renderer>> Renderer::make(const std::string& shader_folder, Quality quality) {
+  static const std::array<Grade, 3> grades = {
+      {{0, 1, 0, 0, 1024, 8, 1, false}, {2, 6, 6, 1, 1024, 256, 0, true}, {4, 14, 12, 1, 2048, 512, 0, true}}};
+  if (epoxy_gl_version() < 33)
+    return Error{fmt::format("OpenGL is {}.{} here ({}), the picture needs 3.3", epoxy_gl_version() / 10,
+                             epoxy_gl_version() % 10, gl_driver())};
+  const Grade& grade = grades[static_cast<std::size_t>(quality)];
+  std::string defines = fmt::format("#define SHADOW_TAPS {}\n#define CONTACT_TAPS {}\n#define DITHER {}\n",
+                                    grade.shadow_taps, grade.contact_taps, grade.dither);
+  std::unique_ptr<Renderer> made(new Renderer(shader_folder, grade, std::move(defines)));
+  if (Result<void> started = made->shaders_.start(); !started) return Error{started.error()};
+  return made;
+}
+
+Renderer::DepthMap Renderer::make_depth(int side, bool compares) {
+  DepthMap map{GlTexture::make(), GlFramebuffer::make()};
+  glBindTexture(GL_TEXTURE_2D, *map.texture);
+  glTexImage2D(GL_TEXTURE_2D, 0, GL_DEPTH_COMPONENT24, side, side, 0, GL_DEPTH_COMPONENT, GL_UNSIGNED_INT, nullptr);
+  glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_LINEAR);
+  glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, GL_LINEAR);
+  glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_WRAP_S, GL_CLAMP_TO_EDGE);
+  glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_WRAP_T, GL_CLAMP_TO_EDGE);
+  if (compares) glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_COMPARE_MODE, GL_COMPARE_REF_TO_TEXTURE);
+  glBindFramebuffer(GL_FRAMEBUFFER, *map.frame);
+  glFramebufferTexture2D(GL_FRAMEBUFFER, GL_DEPTH_ATTACHMENT, GL_TEXTURE_2D, *map.texture, 0);
+  glDrawBuffer(GL_NONE);
+  glReadBuffer(GL_NONE);
+  return map;
+}
+
+Result<void> Renderer::resize(int width, int height) {
+  if (width > largest_ || height > largest_)
+    return Error{fmt::format("a picture of {} × {} is too large: {} draws up to {} a side", width, height, gl_driver(),
+                             largest_)};
+  if (width == width_ && height == height_) return {};
+  const auto store = [&](const GlRenderbuffer& buffer, GLenum format, int samples) {
+    glBindRenderbuffer(GL_RENDERBUFFER, *buffer);
+    glRenderbufferStorageMultisample(GL_RENDERBUFFER, samples, format, width, height);
+  };
+  GLint most = 0;
+  glGetIntegerv(GL_MAX_SAMPLES, &most);
+  const int samples = std::min(grade_.samples, most);
+  store(color_, GL_SRGB8_ALPHA8, samples);
+  store(depth_, GL_DEPTH_COMPONENT24, samples);
+  store(picture_, GL_SRGB8_ALPHA8, 0);
+  glBindFramebuffer(GL_FRAMEBUFFER, *canvas_);
+  glFramebufferRenderbuffer(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_RENDERBUFFER, *color_);
+  glFramebufferRenderbuffer(GL_FRAMEBUFFER, GL_DEPTH_ATTACHMENT, GL_RENDERBUFFER, *depth_);
+  const bool whole = glCheckFramebufferStatus(GL_FRAMEBUFFER) == GL_FRAMEBUFFER_COMPLETE;
+  glBindFramebuffer(GL_FRAMEBUFFER, *resolved_);
+  glFramebufferRenderbuffer(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_RENDERBUFFER, *picture_);
+  if (!whole || glGetError() == GL_OUT_OF_MEMORY)
+    return Error{fmt::format("OpenGL has no room for a picture of {} × {}", width, height)};
+  width_ = width;
+  height_ = height;
+  return {};
+}
+
+const Renderer::GpuMesh& Renderer::mesh(const MeshKey& key, int detail) {
+  const auto [found, fresh] = meshes_.try_emplace({key, detail});
+  GpuMesh& made = found->second;
+  if (!fresh) return made;
+  const MeshVertices vertices =
+      key.model != nullptr ? model_mesh(*key.model, detail) : primitive_mesh(key.kind, detail);
+  made = {GlVertexArray::make(), GlBuffer::make(), static_cast<GLsizei>(vertices.size())};
+  glBindVertexArray(*made.array);
+  glBindBuffer(GL_ARRAY_BUFFER, *made.vertices);
+  glBufferData(GL_ARRAY_BUFFER, static_cast<GLsizeiptr>(vertices.size() * sizeof(MeshVertex)), vertices.data(),
+               GL_STATIC_DRAW);
+  glVertexAttribPointer(0, 3, GL_FLOAT, GL_FALSE, sizeof(MeshVertex), offset(offsetof(MeshVertex, corner)));
+  glVertexAttribPointer(1, 3, GL_FLOAT, GL_FALSE, sizeof(MeshVertex), offset(offsetof(MeshVertex, normal)));
+  for (GLuint i = 0; i < 7; i++) {
+    glEnableVertexAttribArray(i);
+    if (i >= 2) glVertexAttribDivisor(i, 1);
+  }
+  return made;
+}
+
+// files' meshes that no body shows any more
+void Renderer::forget_meshes() {
+  if (meshes_of_ == list_.drawing()) return;
+  meshes_of_ = list_.drawing();
+  std::erase_if(meshes_, [this](const auto& entry) {
+    const MeshModel* const model = entry.first.first.model;
+    return model != nullptr && !list_.models().contains(model);
+  });
+}
+
+void Renderer::upload(const FrameBlock& frame) {
+  glBindBufferBase(GL_UNIFORM_BUFFER, 0, *frame_);
+  glBufferData(GL_UNIFORM_BUFFER, sizeof frame, &frame, GL_STREAM_DRAW);
+}
+
+void Renderer::draw_batches(const std::vector<Batch>& batches, int coarser, bool casting) {
+  for (const Batch& batch : batches) {
+    if (casting && !batch.casts) continue;
+    const GpuMesh& gpu = mesh(batch.mesh, std::min(batch.detail + coarser, kDetails - 1));
+    glBindVertexArray(*gpu.array);
+    glBindBuffer(GL_ARRAY_BUFFER, *instances_);
+    describe_instance(batch.first);
+    glDrawArraysInstanced(GL_TRIANGLES, 0, gpu.count, static_cast<GLsizei>(batch.count));
+  }
+}
+
+// `through`: what is nearer than the map begins counts as at its beginning
+void Renderer::draw_depth(const DepthMap& map, int side, const glm::mat4& clip, bool through) {
+  FrameBlock frame{};
+  frame.view_proj = clip;
+  upload(frame);
+  glBindFramebuffer(GL_FRAMEBUFFER, *map.frame);
+  glViewport(0, 0, side, side);
+  glClear(GL_DEPTH_BUFFER_BIT);
+  glUseProgram(shaders_.program("depth"));
+  if (through) {
+    glEnable(GL_DEPTH_CLAMP);
+    glDisable(GL_CULL_FACE);
+  } else {
+    glEnable(GL_POLYGON_OFFSET_FILL);
+    glPolygonOffset(1.5F, 2.0F);
+  }
+  draw_batches(list_.opaque(), 1, true);
+  draw_batches(list_.clear(), 1, true);
+  glDisable(GL_DEPTH_CLAMP);
+  glDisable(GL_POLYGON_OFFSET_FILL);
+  glEnable(GL_CULL_FACE);
+}
+
+void Renderer::draw_sky() {
+  glDepthMask(GL_FALSE);
+  glUseProgram(shaders_.program("sky"));
+  glBindVertexArray(*nothing_);
+  glDrawArrays(GL_TRIANGLES, 0, 3);
+  glDepthMask(GL_TRUE);
+}
+
+// the world turned over at the floor, with the eye below it; the floor is drawn over it
+void Renderer::draw_mirrored(const Lighting& lighting) {
+  const float floor = lighting.frame.tone.z;
+  FrameBlock frame = lighting.frame;
+  glm::mat4 over = glm::translate(glm::mat4(1), glm::vec3(0, 0, 2 * floor));
+  over = glm::scale(over, glm::vec3(1, 1, -1));
+  frame.view_proj = frame.view_proj * over;
+  frame.eye.z = 2 * floor - frame.eye.z;
+  frame.eye.w = 1;
+  upload(frame);
+  glUseProgram(shaders_.program("shape"));
+  glFrontFace(GL_CW);
+  glEnable(GL_CLIP_DISTANCE0);
+  glEnable(GL_BLEND);
+  draw_batches(list_.opaque(), 0, false);
+  draw_batches(list_.clear(), 0, false);
+  glDisable(GL_BLEND);
+  glDisable(GL_CLIP_DISTANCE0);
+  glFrontFace(GL_CCW);
+}
+
+void Renderer::draw_floor(const PlaneView& plane, const Lighting& lighting, bool stage) {
+  const glm::vec3 n = glm::normalize(plane.normal);
+  const glm::vec3 eye(lighting.frame.eye);
+  const glm::vec3 below = eye - n * glm::dot(eye - plane.origin, n);
+  const glm::vec3 along =
+      std::abs(n.z) > kLying ? glm::vec3(1, 0, 0) : glm::normalize(glm::cross(glm::vec3(0, 0, 1), n));
+  const glm::vec3 across = glm::cross(n, along);
+  glUseProgram(shaders_.program("floor"));
+  const auto set = [this](const char* name, const glm::vec4& value) {
+    glUniform4fv(shaders_.uniform("floor", name), 1, glm::value_ptr(value));
+  };
+  set("origin", glm::vec4(below, lighting.floor_reach));
+  set("along", glm::vec4(along, stage ? 1 : 0));
+  set("across", glm::vec4(across, 0));
+  set("tint", glm::vec4(plane.tint, plane.alpha));
+  const bool opaque = plane.alpha >= 1 && !(stage && lighting.mirrors);
+  if (!opaque) glEnable(GL_BLEND);
+  glBindVertexArray(*nothing_);
+  glDrawArrays(GL_TRIANGLE_STRIP, 0, 4);
+  glDisable(GL_BLEND);
+}
+
+// the scene's planes; the first that lies is the stage's floor, else there is one at height 0
+void Renderer::draw_floors(const Lighting& lighting, const LookView& look) {
+  glDisable(GL_CULL_FACE);
+  bool stands = false;
+  for (const PlaneView& plane : list_.planes()) {
+    const bool lies = std::abs(plane.normal.z) > kLying;
+    draw_floor(plane, lighting, lies && !stands);
+    stands = stands || lies;
+  }
+  if (!stands && look.floor && lighting.frame.eye.z > lighting.frame.tone.z)
+    draw_floor({{0, 0, 0}, {0, 0, 1}, glm::vec3(1), 1}, lighting, true);
+  glEnable(GL_CULL_FACE);
+}
+
+Result<void> Renderer::draw(const Snapshot& before, const Snapshot& now, double mix, int width, int height) {
+  width = std::max(width, 1);
+  height = std::max(height, 1);
+  if (Result<void> sized = resize(width, height); !sized) return sized;
+  const CameraView camera = camera_of(now);
+  const LookView look = look_of(now);
+  const Lens lens = lens_of(camera, width, height);
+  list_.gather(before, now, mix, {lens.eye, lens.forward, lens.pixels, grade_.coarser});
+  forget_meshes();
+  Stand stand{list_.center(), list_.radius(), 0, grade_.lamp_map};
+  for (const PlaneView& plane : list_.planes()) {
+    if (std::abs(plane.normal.z) <= kLying) continue;
+    stand.floor = plane.origin.z;
+    break;
+  }
+  Lighting lighting = light(look, lens, camera.far, stand);
+  if (!grade_.mirror) {
+    lighting.mirrors = false;
+    lighting.frame.floor_color.w = 0;
+  }
+
+  const std::vector<Instance>& instances = list_.instances();
+  glBindBuffer(GL_ARRAY_BUFFER, *instances_);
+  glBufferData(GL_ARRAY_BUFFER, static_cast<GLsizeiptr>(instances.size() * sizeof(Instance)), instances.data(),
+               GL_STREAM_DRAW);
+  glBlendFunc(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA);
+  glEnable(GL_DEPTH_TEST);
+  glDepthFunc(GL_LEQUAL);
+  glEnable(GL_CULL_FACE);
+  glEnable(GL_FRAMEBUFFER_SRGB);
+  draw_depth(lamp_, grade_.lamp_map, lighting.lamp_clip, false);
+  if (grade_.contact_taps > 0) draw_depth(ground_, grade_.ground_map, lighting.ground_clip, true);
+
+  glActiveTexture(GL_TEXTURE1);
+  glBindTexture(GL_TEXTURE_2D, *ground_.texture);
+  glActiveTexture(GL_TEXTURE0);
+  glBindTexture(GL_TEXTURE_2D, *lamp_.texture);
+  glBindFramebuffer(GL_FRAMEBUFFER, *canvas_);
+  glViewport(0, 0, width, height);
+  glClearColor(0, 0, 0, 1);
+  glClear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
+  upload(lighting.frame);
+  // what shines through the floor comes before it; else what is nearest comes first and spares the rest
+  if (lighting.mirrors) {
+    draw_sky();
+    draw_mirrored(lighting);
+    upload(lighting.frame);
+    draw_floors(lighting, look);
+  }
+  glUseProgram(shaders_.program("shape"));
+  draw_batches(list_.opaque(), 0, false);
+  if (!lighting.mirrors) {
+    draw_floors(lighting, look);
+    draw_sky();
+  }
+  glUseProgram(shaders_.program("shape"));
+  glDepthMask(GL_FALSE);
+  glEnable(GL_BLEND);
+  draw_batches(list_.clear(), 0, false);
+  glDisable(GL_BLEND);
+  glDepthMask(GL_TRUE);
+
+  glBindFramebuffer(GL_READ_FRAMEBUFFER, *canvas_);
+  glBindFramebuffer(GL_DRAW_FRAMEBUFFER, *resolved_);
+  glBlitFramebuffer(0, 0, width, height, 0, 0, width, height, GL_COLOR_BUFFER_BIT, GL_NEAREST);
+  glBindVertexArray(0);
+  return {};
+}
+
+Pixels Renderer::read() const {
+  Pixels pixels{width_, height_, {}};
+  const std::size_t row = 4 * static_cast<std::size_t>(width_);
+  pixels.bytes.resize(row * static_cast<std::size_t>(height_));
+  glBindFramebuffer(GL_READ_FRAMEBUFFER, *resolved_);
+  glPixelStorei(GL_PACK_ALIGNMENT, 1);
+  glReadPixels(0, 0, width_, height_, GL_RGBA, GL_UNSIGNED_BYTE, pixels.bytes.data());
+  // OpenGL's first row is the lowest
+  for (std::size_t low = 0, high = static_cast<std::size_t>(height_) - 1; low < high; low++, high--)
+    std::swap_ranges(pixels.bytes.begin() + static_cast<std::ptrdiff_t>(low * row),
+                     pixels.bytes.begin() + static_cast<std::ptrdiff_t>((low + 1) * row),
+                     pixels.bytes.begin() + static_cast<std::ptrdiff_t>(high * row));
+  for (std::size_t i = 3; i < pixels.bytes.size(); i += 4) pixels.bytes[i] = 255;
+  return pixels;
+}
+
+void Renderer::show(int width, int height) const {
+  glDisable(GL_FRAMEBUFFER_SRGB);  // the bytes as they are
+  glBindFramebuffer(GL_READ_FRAMEBUFFER, *resolved_);
+  glBindFramebuffer(GL_DRAW_FRAMEBUFFER, 0);
+  const bool fits = width == width_ && height == height_;
+  glBlitFramebuffer(0, 0, width_, height_, 0, 0, width, height, GL_COLOR_BUFFER_BIT, fits ? GL_NEAREST : GL_LINEAR);
+}
+
+}  // namespace limber

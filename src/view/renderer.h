@@ -1,0 +1,80 @@
+// Renderer: draws a snapshot into a picture of its own, in whichever context is current: a window's or none's.
+#pragma once
+
+#include <map>
+#include <memory>
+#include <string>
+#include <utility>
+
+#include "view/draw_list.h"
+#include "view/gl.h"
+#include "view/lighting.h"
+#include "view/pixels.h"
+#include "view/shaders.h"
+
+namespace limber {
+
+enum class Quality : std::uint8_t { low, medium, high };
+
+class Renderer {
+ public:
+  /// `shader_folder`: watched by renew_shaders(); empty: the shaders inside the program. Needs a current context, which
+  /// outlives it. An error: what OpenGL can't do here. [main]
+  static Result<std::unique_ptr<Renderer>> make(const std::string& shader_folder, Quality quality);
+
+  /// Draws between two snapshots (`mix` 0: before, 1: now). A picture is at least 1 × 1; an error: too large. [main]
+  Result<void> draw(const Snapshot& before, const Snapshot& now, double mix, int width, int height);
+  Result<void> draw(const Snapshot& now, int width, int height) { return draw(now, now, 1, width, height); }
+  /// The picture drawn last. [main]
+  Pixels read() const;
+  /// Copies it into the window's own framebuffer, stretched to that size. [main]
+  void show(int width, int height) const;
+
+  /// Takes over shaders that were saved; true: the picture looks different now. [main]
+  bool renew_shaders() { return shaders_.renew(); }
+  const std::string& shader_fault() const { return shaders_.fault(); }
+  /// A side of the largest picture, pixels.
+  int largest() const { return largest_; }
+
+ private:
+  struct Grade;
+  struct GpuMesh {
+    GlVertexArray array;
+    GlBuffer vertices;
+    GLsizei count = 0;
+  };
+  /// A depth texture to draw into.
+  struct DepthMap {
+    GlTexture texture;
+    GlFramebuffer frame;
+  };
+  Renderer(std::string shader_folder, const Grade& grade, std::string defines);
+
+  static DepthMap make_depth(int side, bool compares);
+  Result<void> resize(int width, int height);
+  const GpuMesh& mesh(const MeshKey& key, int detail);
+  void forget_meshes();
+  void upload(const FrameBlock& frame);
+  void draw_depth(const DepthMap& map, int side, const glm::mat4& clip, bool through);
+  void draw_batches(const std::vector<Batch>& batches, int coarser, bool casting);
+  void draw_mirrored(const Lighting& lighting);
+  void draw_floors(const Lighting& lighting, const LookView& look);
+  void draw_floor(const PlaneView& plane, const Lighting& lighting, bool stage);
+  void draw_sky();
+
+  const Grade& grade_;
+  Shaders shaders_;
+  DrawList list_;
+  std::shared_ptr<const Drawing> meshes_of_;
+  std::map<std::pair<MeshKey, int>, GpuMesh> meshes_;
+  GlBuffer instances_, frame_;
+  GlVertexArray nothing_;  // for what makes its corners in the shader
+  DepthMap lamp_, ground_;
+  GlFramebuffer canvas_, resolved_;
+  GlRenderbuffer color_, depth_, picture_;
+  int width_ = 0;
+  int height_ = 0;
+  int largest_ = 0;
+};
+
+}  // namespace limber

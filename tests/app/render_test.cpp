@@ -1,0 +1,151 @@
+// Stills and films: without any display, at exact times, as the headless run goes; stopped halfway they are whole.
+#include <unistd.h>
+
+#include <algorithm>
+
+#include "app/program.h"
+
+namespace limber::app_test {
+namespace {
+
+// a ball that falls past the camera, and says when it has begun
+constexpr const char* kFall = R"(
+local ball = sim:add_body("ball")
+ball:add_part("ball", sim:add_sphere_shape("ball", 0.3), { position = vec3(0, 0, 3) })
+sim:on_step(function() if sim.tick == 20 then print("begun") end end)
+)";
+
+std::string bytes(const std::string& file) {
+  std::ifstream in(file, std::ios::binary);
+  return {std::istreambuf_iterator<char>(in), {}};
+}
+
+std::vector<std::string> names(const std::string& folder) {
+  std::vector<std::string> all;
+  for (const auto& entry : std::filesystem::directory_iterator(folder)) all.push_back(entry.path().filename());
+  std::sort(all.begin(), all.end());
+  return all;
+}
+
+std::vector<std::string> small(std::vector<std::string> args) {
+  args.insert(args.end(), {"--size", "32x18", "--quality", "low"});
+  return args;
+}
+
+bool has_ffmpeg() { return Running({"sh", "-c", "command -v ffmpeg && command -v ffprobe"}).finish().code == 0; }
+
+TEST(Render, FrameKShowsTheTimeKByFps) {
+  const Folder folder;
+  const std::string scene = folder.file("fall.lua", kFall);
+  const std::string shots = folder.file("shots/note", "");
+  const std::string pattern = folder.path() + "/shots/shot_%03d.png";
+  const Ran film = run(small({scene, "--render", pattern, "--fps", "25", "--duration", "0.4", "--hash"}));
+  EXPECT_EQ(film.code, 0) << film.err;
+  EXPECT_EQ(names(folder.path() + "/shots").size(), 11u) << "ten frames and the note";
+  EXPECT_EQ(film.out.substr(film.out.find("hash")),
+            run({scene, "--fast", "--duration", "0.4", "--hash"}).out.substr(film.out.find("hash")))
+      << "the world is that of a headless run";
+  for (const int frame : {0, 3, 7}) {  // 7/25 s lies between two ticks
+    const std::string still = fmt::format("{}/still_{}.png", folder.path(), frame);
+    const Ran shot = run(small({scene, "--screenshot", still, "--at", fmt::format("{}", frame / 25.0)}));
+    EXPECT_EQ(shot.code, 0) << shot.err;
+    EXPECT_EQ(bytes(still), bytes(fmt::format("{}/shots/shot_{:03}.png", folder.path(), frame))) << frame;
+  }
+  EXPECT_NE(bytes(folder.path() + "/shots/shot_003.png"), bytes(folder.path() + "/shots/shot_007.png"));
+}
+
+TEST(Render, AVideoHasItsFrames) {
+  const Folder folder;
+  const std::string scene = folder.file("fall.lua", kFall);
+  const std::string video = folder.path() + "/fall.mp4";
+  const Ran film = run(small({scene, "--render", video, "--fps", "60", "--seconds", "0.5"}));
+  if (!has_ffmpeg()) {
+    EXPECT_EQ(film.code, 3);
+    EXPECT_NE(film.err.find("apt-get install ffmpeg"), std::string::npos) << film.err;
+    return;
+  }
+  EXPECT_EQ(film.code, 0) << film.err;
+  const Ran probe = Running({"ffprobe", "-v", "error", "-count_frames", "-show_entries",
+                             "stream=nb_read_frames,width,height,r_frame_rate", "-of", "csv=p=0", video})
+                        .finish();
+  EXPECT_EQ(probe.out, "32,18,60/1,30\n") << probe.err;
+  EXPECT_EQ(names(folder.path()), (std::vector<std::string>{"fall.lua", "fall.mp4"})) << "nothing else is left";
+}
+
+TEST(Render, WithoutFfmpegItSaysHowToGetIt) {
+  const Folder folder;
+  const std::string scene = folder.file("fall.lua", kFall);
+  const std::string video = folder.path() + "/fall.mp4";
+  const Ran film =
+      Running(limber(small({scene, "--render", video, "--duration", "0.1"}), {"env", "PATH=/nowhere"})).finish();
+  EXPECT_EQ(film.code, 3);
+  EXPECT_NE(film.err.find("apt-get install ffmpeg"), std::string::npos) << film.err;
+  EXPECT_EQ(names(folder.path()), std::vector<std::string>{"fall.lua"});
+}
+
+TEST(Render, CtrlCLeavesAWholeShorterFilm) {
+  for (const bool video : {true, false}) {
+    if (video && !has_ffmpeg()) continue;
+    const Folder folder;
+    const std::string scene = folder.file("fall.lua", kFall);
+    const std::string name = folder.path() + (video ? "/fall.mp4" : "/shot_%05d.png");
+    Running running(limber(small({scene, "--render", name, "--duration", "1000"})));
+    ASSERT_TRUE(running.wait_for("begun", true)) << running.err();
+    running.signal(SIGINT);
+    const Ran ran = running.finish();
+    EXPECT_EQ(ran.code, 0) << ran.err;
+    EXPECT_NE(ran.err.find("cancelled"), std::string::npos) << ran.err;
+    for (const std::string& file : names(folder.path())) {
+      EXPECT_EQ(file.find(".part"), std::string::npos) << file;
+      if (file.ends_with(".png")) {
+        EXPECT_TRUE(bytes(folder.path() + "/" + file).ends_with("IEND\xae\x42\x60\x82"));
+      }
+    }
+    if (video) {
+      EXPECT_EQ(Running({"ffprobe", "-v", "error", name}).finish().code, 0);
+    }
+  }
+}
+
+TEST(Render, TimeThatStandsStillIsSaid) {
+  const Folder folder;
+  const std::string scene = folder.file("fall.lua", kFall);
+  const Ran ran =
+      run(small({scene, "--screenshot", folder.path() + "/a.png", "--at", "1", "--set", "/physics/sim/paused=true"}));
+  EXPECT_EQ(ran.code, 1);
+  EXPECT_NE(ran.err.find("time stands still"), std::string::npos) << ran.err;
+}
+
+TEST(Render, WrongUsageNamesTheCure) {
+  struct Case {
+    std::vector<std::string> args;
+    const char* said;
+  };
+  const Case cases[] = {
+      {{"--render", "a.mp4"}, "--duration"},
+      {{"--render", "a.gif", "--duration", "1"}, "shot_%05d.png"},
+      {{"--render", "a_%d_%d.png", "--duration", "1"}, "shot_%05d.png"},
+      {{"--render", "a_%s.png", "--duration", "1"}, "shot_%05d.png"},
+      {{"--render", "a.mp4", "--duration", "1", "--size", "33x18"}, "34x18"},
+      {{"--screenshot", "a.jpg"}, ".png"},
+      {{"--screenshot", "a.png", "--size", "0x9"}, "1280x720"},
+      {{"--screenshot", "a.png", "--size", "10x20x30"}, "1280x720"},
+      {{"--screenshot", "a.png", "--size", "99999x9"}, "16384"},
+      {{"--screenshot", "a.png", "--render", "a.mp4", "--duration", "1"}, "don't go together"},
+      {{"--at", "2"}, "--screenshot"},
+      {{"--fps", "2"}, "--render"},
+      {{"--quality", "best"}, "low"},
+  };
+  for (const Case& c : cases) {
+    const Ran ran = run(c.args);
+    EXPECT_EQ(ran.code, 2) << c.args[0] << " " << ran.err;
+    EXPECT_NE(ran.err.find(c.said), std::string::npos) << ran.err;
+  }
+  const Folder folder;
+  const Ran nowhere = run(small({folder.file("s.lua", kFall), "--screenshot", "/nowhere/a.png"}));
+  EXPECT_EQ(nowhere.code, 1);
+  EXPECT_NE(nowhere.err.find("'/nowhere/a.png'"), std::string::npos) << nowhere.err;
+}
+
+}  // namespace
+}  // namespace limber::app_test

@@ -1,0 +1,127 @@
+// Drawings: who is drawn with which form; the numbers that snapshots carry for it.
+#include "engine/drawing.h"
+
+#include "engine/show.h"
+#include "model/urdf_import.h"
+
+namespace limber::engine_test {
+namespace {
+
+TEST(Drawing, APieceForEachGeometryOfEachPart) {
+  Rig rig;
+  Latest<Snapshot> latest;
+  Publisher publisher(rig.world, latest);
+  publisher.publish(false, 1);
+  const auto now = latest.read();
+  const Drawing& drawing = *now->drawing;
+  // four parts of arm, two of 1, one floor; two shapes
+  ASSERT_EQ(drawing.pieces.size(), 7u);
+  EXPECT_EQ(drawing.forms.size(), 2u);
+  EXPECT_EQ(drawing.forms[drawing.pieces[0].form].shape.kind, ShapeKind::sphere);
+  EXPECT_EQ(drawing.forms[drawing.pieces[6].form].shape.kind, ShapeKind::plane);
+  EXPECT_EQ(drawing.pieces[3].part_at, now->roster->bodies[0].parts[3]);
+  EXPECT_EQ(drawing.pieces[4].enabled_at, now->roster->bodies[1].enabled_at);
+}
+
+TEST(Drawing, AnotherOneOnlyWhenSomebodyComesOrGoes) {
+  Rig rig;
+  Latest<Snapshot> latest;
+  Publisher publisher(rig.world, latest);
+  const auto now = [&] {
+    rig.world.step();
+    publisher.publish(false, 1);
+    return latest.read();
+  };
+  const auto first = now();
+  rig.send("/visuals/shape/ball/transparency", 0.5);
+  const auto painted = now();
+  EXPECT_EQ(painted->drawing, first->drawing);
+  EXPECT_NE(painted->visuals_version, first->visuals_version);
+  EXPECT_EQ(now()->visuals_version, painted->visuals_version) << "nothing was set";
+  rig.world.remove_body(*rig.world.find_body("1"));
+  EXPECT_EQ(now()->drawing->pieces.size(), 5u);
+}
+
+TEST(Drawing, MaterialsCameraAndLookAreTheRows) {
+  Rig rig;
+  Latest<Snapshot> latest;
+  Publisher publisher(rig.world, latest);
+  rig.send("/visuals/shape/ground/diffuse_color", 0.1, 0.2, 0.3);
+  rig.send("/visuals/shape/ball/specular_pow", 77);
+  rig.send("/visuals/camera/position", 1, 2, -3);
+  rig.send("/visuals/camera/projection", 50, 1.5, 0.1, 60);
+  publisher.publish(false, 1);
+  auto now = latest.read();
+  const auto material = [&](std::size_t piece) {
+    return material_of(*now, now->drawing->forms[now->drawing->pieces[piece].form].material);
+  };
+  EXPECT_EQ(material(6).diffuse_color, Vec3(0.1, 0.2, 0.3));
+  EXPECT_EQ(material(0).diffuse_color, Vec3(0, 0, 1));
+  EXPECT_EQ(material(0).specular_pow, 77);
+  EXPECT_EQ(material_of(*now, 0).specular_pow, 10) << "0: as the table has it";
+  const CameraView camera = camera_of(*now);
+  EXPECT_EQ(camera.position, Vec3(1, 2, -3));
+  EXPECT_EQ(camera.fovy, 50);
+  EXPECT_EQ(camera.aspect, 1.5);
+  EXPECT_EQ(camera.near, 0.1);
+  EXPECT_EQ(camera.far, 60);
+  LookView look = look_of(*now);
+  EXPECT_FALSE(look.studio);
+  EXPECT_FALSE(look.own_background);
+  EXPECT_TRUE(look.floor);
+  rig.send("/visuals/look/style", "studio");
+  rig.send("/visuals/look/mirror", 2);
+  rig.send("/visuals/look/floor", false);
+  rig.send("/visuals/background", 0.5, 1, 0.25);
+  publisher.publish(false, 1);
+  now = latest.read();
+  look = look_of(*now);
+  EXPECT_TRUE(look.studio);
+  EXPECT_EQ(look.mirror, 2);
+  EXPECT_FALSE(look.floor);
+  EXPECT_TRUE(look.own_background);
+  EXPECT_EQ(look.background, Vec3(0.5, 1, 0.25));
+}
+
+TEST(Drawing, CompoundsAreDrawnChildByChildInTheirMaterial) {
+  Rig rig;
+  ShapeModel model;
+  model.kind = ShapeKind::compound;
+  Shape& whole = **rig.world.add_shape("whole", model);
+  ASSERT_TRUE(whole.add_child(*rig.world.find_shape("ball"), {{0, 0, 1}, quat_identity()}).ok());
+  ASSERT_TRUE(whole.add_child(*rig.world.find_shape("ball"), {{0, 0, 2}, quat_identity()}).ok());
+  Body& body = **rig.world.add_body("compound");
+  ASSERT_TRUE(body.add_part("a", whole, 0, {}).ok());
+  ASSERT_TRUE(body.add_part("b", whole, 0, {}).ok());
+  const Drawing drawing(rig.world);
+  ASSERT_EQ(drawing.pieces.size(), 11u);
+  EXPECT_EQ(drawing.forms.size(), 4u) << "shared by both parts";
+  EXPECT_EQ(drawing.pieces[8].origin.position.z, 2);
+  EXPECT_EQ(drawing.forms[drawing.pieces[8].form].material, 3u) << "the compound's, not the child's";
+}
+
+TEST(Drawing, AFilesVisualsInTheirOwnColours) {
+  Rig rig;
+  const auto imported = import_urdf(std::string(LIMBER_SOURCE_DIR) + "/urdf/arm6.urdf", {});
+  ASSERT_TRUE(imported.ok());
+  const std::shared_ptr<const BodyModel>& model = *imported;
+  ASSERT_TRUE(rig.world.add_body(model, "one", {}).ok());
+  const std::size_t before = Drawing(rig.world).forms.size();
+  ASSERT_TRUE(rig.world.add_body(model, "two", {}).ok());
+  Latest<Snapshot> latest;
+  Publisher publisher(rig.world, latest);
+  publisher.publish(false, 1);
+  const auto now = latest.read();
+  EXPECT_EQ(now->drawing->forms.size(), before) << "bodies of one model share their forms";
+  std::size_t visuals = 0;
+  for (const LinkModel& link : model->links) visuals += link.visuals.size();
+  ASSERT_EQ(now->drawing->pieces.size(), 7 + 2 * visuals);
+  const DrawnForm& form = now->drawing->forms[now->drawing->pieces[7].form];
+  EXPECT_EQ(form.shape.mesh, model->links[0].visuals[0].shape.mesh) << "the mesh itself, not a copy";
+  const Shape& shape = *rig.world.find_shape(visual_shape_name(*model, model->links[0], 0));
+  EXPECT_EQ(material_of(*now, form.material).diffuse_color,
+            vec3_at(rig.store.values(shape.id(), Shape::table().at("diffuse_color"))));
+}
+
+}  // namespace
+}  // namespace limber::engine_test

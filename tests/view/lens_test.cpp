@@ -1,0 +1,73 @@
+// The camera's rows as matrices, and a hand that turns, shifts and zooms.
+#include "view/lens.h"
+
+#include "view/stage.h"
+
+namespace limber::view_test {
+namespace {
+
+Vec3 seen(const Lens& lens, const Vec3& point) {
+  const glm::vec4 clip = lens.projection * lens.view * glm::vec4(glm::vec3(point), 1);
+  return Vec3(clip) / static_cast<double>(clip.w);
+}
+
+TEST(Lens, LooksWhereTheCamerasRowsSay) {
+  Stage stage;
+  for (const auto& [eye, target] : {std::pair{Vec3(4.5, -6, 3.5), Vec3(0, 0, 1)},
+                                    {Vec3(-2, 3, 0.5), Vec3(1, 1, 1)},
+                                    {Vec3(0, 0, 9), Vec3(0, 0, 0)}}) {
+    stage.look_from(eye, target);
+    const Lens lens = lens_of(camera_of(*stage.snapshot()), 160, 90);
+    EXPECT_LT(glm::length(lens.eye - eye), 1e-9);
+    EXPECT_LT(glm::length(lens.target - target), 1e-9);
+    EXPECT_LT(glm::length(lens.forward - normalized(target - eye)), 1e-9);
+    const Vec3 middle = seen(lens, target);
+    EXPECT_NEAR(middle.x, 0, 1e-5);
+    EXPECT_NEAR(middle.y, 0, 1e-5);
+    const Vec3 side = glm::cross(lens.forward, lens.up);
+    EXPECT_GT(seen(lens, target + 0.1 * side).x, 0.001) << "right is right";
+    EXPECT_GT(seen(lens, target + 0.1 * lens.up).y, 0.001) << "up is up";
+  }
+}
+
+TEST(Lens, AMetreAtAMetreTakesItsPixels) {
+  CameraView camera;
+  camera.fovy = 90;  // at 1 m the picture is 2 m high
+  EXPECT_NEAR(lens_of(camera, 400, 100).pixels, 50, 1e-9);
+  camera.aspect = 1;
+  const Lens square = lens_of(camera, 400, 100);
+  EXPECT_NEAR(square.projection[0][0], square.projection[1][1], 1e-6) << "the row wins over the picture";
+}
+
+TEST(Orbit, TurnsAboutItsTarget) {
+  Orbit orbit{{0, -2, 0}, {0, 0, 0}};
+  orbit.turn(kPi / 2, 0);
+  EXPECT_LT(glm::length(orbit.eye - Vec3(-2, 0, 0)), 1e-9) << "the world turns to the right";
+  orbit.turn(0, kPi / 4);
+  EXPECT_LT(glm::length(orbit.eye - Vec3(-std::sqrt(2), 0, std::sqrt(2))), 1e-9);
+  orbit.turn(0, 10);
+  EXPECT_NEAR(glm::length(orbit.eye), 2, 1e-9);
+  EXPECT_LT(std::hypot(orbit.eye.x, orbit.eye.y), 0.05) << "at most straight above";
+  EXPECT_LT(orbit.eye.x, 0) << "and not past it";
+  EXPECT_EQ(orbit.target, Vec3(0));
+}
+
+TEST(Orbit, ShiftsAsFarAsTheHandMoved) {
+  Orbit orbit{{0, -2, 1}, {0, 0, 1}};
+  orbit.shift(0.5, 0.25, 90);  // at 2 m the picture is 4 m high
+  EXPECT_LT(glm::length(orbit.target - Vec3(-2, 0, 0)), 1e-9);
+  EXPECT_LT(glm::length(orbit.eye - Vec3(-2, -2, 0)), 1e-9);
+}
+
+TEST(Orbit, ZoomsWithoutArriving) {
+  Orbit orbit{{0, -2, 1}, {0, 0, 1}};
+  orbit.zoom(0.5);
+  EXPECT_LT(glm::length(orbit.eye - Vec3(0, -1, 1)), 1e-9);
+  for (int i = 0; i < 100; i++) orbit.zoom(0.5);
+  EXPECT_GT(glm::length(orbit.eye - orbit.target), 0.01);
+  for (int i = 0; i < 200; i++) orbit.zoom(2);
+  EXPECT_LE(glm::length(orbit.eye - orbit.target), 1.001e5);
+}
+
+}  // namespace
+}  // namespace limber::view_test

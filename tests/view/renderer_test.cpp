@@ -1,0 +1,331 @@
+// Pictures: where things are seen, in which colour, with which light; each expected pixel is computed beside it.
+#include "view/renderer.h"
+
+#include <array>
+
+#include "base/color.h"
+#include "view/stage.h"
+
+namespace limber::view_test {
+namespace {
+
+const Vec3 kRed{0, 1, 1};
+const Vec3 kGreen{1.0 / 3, 1, 1};
+
+bool is_red(const Vec3& c) { return c.x > 60 && c.x > 3 * c.y && c.x > 3 * c.z; }
+
+double hue(const Vec3& c) { return hsb_of(c / 255.0).x; }
+
+TEST(Renderer, ABoxCoversThePixelsThatItsCornersSay) {
+  Stage stage;
+  stage.set("/visuals/look/floor", {0});
+  stage.add("box", box({1, 0.02, 0.5}), {0.5, 0, 1.25});
+  stage.paint("box", kRed);
+  stage.set("/visuals/shape/box/specular_scale", {0});
+  // rim light is no light of the box's own
+  stage.set("/visuals/look/rim", {0});
+  stage.look_from({0, -4, 1}, {0, 0, 1});
+  const auto now = stage.snapshot();
+  const Pixels picture = draw(*now, 320, 180, Quality::low);
+  // its face towards the eye: x 0 .. 1, z 1 .. 1.5, at y -0.01
+  const Spot low = spot_of(*now, {0, -0.01, 1}, 320, 180);
+  const Spot high = spot_of(*now, {1, -0.01, 1.5}, 320, 180);
+  ASSERT_GT(high.x, low.x + 20);
+  ASSERT_LT(high.y, low.y - 10);
+  int red = 0;
+  for (int y = 0; y < 180; y++) {
+    for (int x = 0; x < 320; x++) {
+      const bool inside = x > low.x + 1 && x < high.x - 1 && y > high.y + 1 && y < low.y - 1;
+      const bool outside = x < low.x - 2 || x > high.x + 2 || y < high.y - 2 || y > low.y + 2;
+      const Vec3 c = color(picture, x, y);
+      red += is_red(c) ? 1 : 0;
+      if (inside) {
+        EXPECT_TRUE(is_red(c)) << x << " " << y << " " << c.x << " " << c.y << " " << c.z;
+      }
+      if (outside) {
+        EXPECT_FALSE(is_red(c)) << x << " " << y;
+      }
+    }
+  }
+  EXPECT_NEAR(red, (high.x - low.x) * (low.y - high.y), 0.12 * (high.x - low.x) * (low.y - high.y));
+}
+
+TEST(Renderer, WhatIsOnTheRightIsSeenOnTheRight) {
+  Stage stage;
+  stage.add("right", box(Vec3(0.5)), {1, 0, 1});
+  stage.add("left", box(Vec3(0.5)), {-1, 0, 1});
+  stage.paint("right", kRed);
+  stage.paint("left", kGreen);
+  stage.look_from({0, -5, 1}, {0, 0, 1});
+  const Pixels picture = draw(stage);
+  int red = 0;
+  int green = 0;
+  for (int y = 0; y < 90; y++) {
+    for (int x = 80; x < 160; x++) {
+      const Vec3 c = color(picture, x, y);
+      red += is_red(c) ? 1 : 0;
+      green += c.y > 60 && c.y > 3 * c.x && c.y > 3 * c.z ? 1 : 0;
+    }
+  }
+  EXPECT_GT(red, 50);
+  EXPECT_EQ(green, 0);
+}
+
+TEST(Renderer, TheBackgroundIsTheRowsColour) {
+  Stage stage;
+  const Vec3 orange{0.08, 0.8, 0.5};
+  stage.set("/visuals/background", {orange.x, orange.y, orange.z});
+  stage.set("/visuals/look/floor", {0});
+  stage.look_from({0, 0, 1}, {5, 0, 1});
+  for (const double style : {0.0, 1.0}) {
+    stage.set("/visuals/look/style", {style});
+    const Pixels picture = draw(stage);
+    const Vec3 horizon = color(picture, 80, 46) / 255.0;
+    EXPECT_LT(glm::length(horizon - rgb_of(orange)), 0.03) << horizon.x << " " << horizon.y << " " << horizon.z;
+    EXPECT_LT(brightness(picture, 80, 0), brightness(picture, 80, 46)) << "darker towards the zenith";
+  }
+}
+
+TEST(Renderer, TheHorizonHasNoEdge) {
+  for (const double style : {0.0, 1.0}) {
+    Stage stage;
+    stage.set("/visuals/look/style", {style});
+    stage.set("/visuals/look/grid", {0});
+    const Vec3 eye{0, -8, 3};
+    stage.look_from(eye, {0, 0, 1.2});
+    for (const double far : {200.0, 30.0}) {
+      stage.set("/visuals/camera/far", {far});
+      const auto now = stage.snapshot();
+      const Pixels picture = draw(*now, 64, 360, Quality::high);
+      const int horizon = spot_of(*now, eye + Vec3(0, 1e6, 0), 64, 360).y;
+      ASSERT_GT(horizon, 60);
+      for (int y = horizon - 60; y < horizon + 60; y++)
+        EXPECT_LE(std::abs(brightness(picture, 8, y) - brightness(picture, 8, y + 1)), 2)
+            << "style " << style << " far " << far << " row " << y;
+    }
+  }
+}
+
+// where the middle of a ball's shadow falls on the floor
+Vec3 shadow_of(const Snapshot& now, const Vec3& ball, double radius) {
+  const Lens lens = lens_of(camera_of(now), 160, 90);
+  const Lighting lighting =
+      light(look_of(now), lens, camera_of(now).far, {glm::vec3(ball), static_cast<float>(radius), 0, 1024});
+  const Vec3 lamp(lighting.frame.lamp_at);
+  const Vec3 way = lighting.frame.lamp_at.w > 0.5 ? normalized(lamp - ball) : normalized(lamp);
+  return ball - way * (ball.z / way.z);
+}
+
+TEST(Renderer, AShadowFallsWhereTheLampSaysAndRowsSayHowDark) {
+  for (const double style : {0.0, 1.0}) {
+    for (const Quality quality : {Quality::low, Quality::high}) {
+      Stage stage;
+      const Vec3 at{0, 0, 0.6};
+      stage.add("ball", round(ShapeKind::sphere, 0.3), at);
+      stage.set("/visuals/look/style", {style});
+      stage.set("/visuals/look/grid", {0});
+      stage.set("/visuals/look/mirror", {0});
+      stage.look_from({0, -3, 4}, {0, 0, 0});
+      const auto now = stage.snapshot();
+      const Spot spot = spot_of(*now, shadow_of(*now, at, 0.3), 160, 90);
+      const double shadow = brightness(draw(*now, 160, 90, quality), spot.x, spot.y);
+      stage.set("/visuals/look/shadow", {0.5});
+      const double half = brightness(draw(stage, 160, 90, quality), spot.x, spot.y);
+      stage.set("/visuals/look/shadow", {0});
+      const double none = brightness(draw(stage, 160, 90, quality), spot.x, spot.y);
+      EXPECT_LT(shadow + 15, half) << "style " << style;
+      EXPECT_LT(half + 8, none) << "style " << style;
+    }
+  }
+}
+
+TEST(Renderer, AStandingThingDarkensTheFloorAroundIt) {
+  Stage stage;
+  stage.add("ball", round(ShapeKind::sphere, 0.3), {0, 0, 0.3});
+  stage.set("/visuals/look/style", {1});
+  stage.set("/visuals/look/lamp", {0});  // light from everywhere alone
+  stage.look_from({0, -3, 2}, {0, 0, 0});
+  const auto now = stage.snapshot();
+  const Pixels picture = draw(*now, 320, 180, Quality::high);
+  const Spot near = spot_of(*now, {0.1, -0.15, 0}, 320, 180);  // the ball hangs 6 cm over it
+  const Spot away = spot_of(*now, {0.9, -0.2, 0}, 320, 180);
+  EXPECT_LT(brightness(picture, near.x, near.y) + 6, brightness(picture, away.x, away.y));
+}
+
+TEST(Renderer, TheStudioIsBrightTheStageIsDark) {
+  Stage stage;
+  stage.add("box", box(Vec3(0.5)), {0, 0, 0.25});
+  const double dark = brightness(draw(stage));
+  stage.set("/visuals/look/style", {1});
+  const double bright = brightness(draw(stage));
+  EXPECT_LT(dark, 50);
+  EXPECT_GT(bright, 170);
+}
+
+TEST(Renderer, TheStageMirrorsTheStudioDoesNot) {
+  Stage stage;
+  stage.add("box", box({0.4, 0.4, 0.8}), {0, 0, 0.5});
+  stage.paint("box", kRed);
+  stage.look_from({0, -4, 1}, {0, 0, 0.4});
+  const auto now = stage.snapshot();
+  // the mirrored front face begins as far below the floor as the box is above it
+  const Spot mirrored = spot_of(*now, {0, -0.2, -0.3}, 160, 90);
+  const Vec3 with = color(draw(*now, 160, 90, Quality::medium), mirrored.x, mirrored.y);
+  stage.set("/visuals/look/mirror", {0});
+  const Vec3 without = color(draw(stage, 160, 90, Quality::medium), mirrored.x, mirrored.y);
+  EXPECT_GT(with.x - with.y, without.x - without.y + 12) << with.x << " " << without.x;
+  stage.set("/visuals/look/mirror", {1});
+  stage.set("/visuals/look/style", {1});
+  const Vec3 studio = color(draw(stage, 160, 90, Quality::medium), mirrored.x, mirrored.y);
+  EXPECT_LT(std::abs(studio.x - studio.y), 12);
+}
+
+TEST(Renderer, ThroughGlassOneSeesWhatIsBehindWhicheverWasMadeFirst) {
+  for (const bool glass_first : {true, false}) {
+    Stage stage;
+    const auto glass = [&] {
+      stage.add("glass", box({1, 0.1, 1}), {0, -1, 1});
+      stage.paint("glass", kRed);
+      stage.set("/visuals/shape/glass/transparency", {0.5});
+    };
+    if (glass_first) glass();
+    stage.add("solid", box({1, 0.1, 1}), {0, 0, 1});
+    stage.paint("solid", kGreen);
+    if (!glass_first) glass();
+    stage.add("clear", box({1, 0.1, 1}), {0, -2, 1});
+    stage.set("/visuals/shape/clear/transparency", {1});
+    stage.look_from({0, -6, 1}, {0, 0, 1});
+    const Vec3 c = color(draw(stage), 80, 45);
+    EXPECT_GT(c.x, 40) << "the glass";
+    EXPECT_GT(c.y, 40) << "what is behind";
+    EXPECT_LT(c.z, 40) << "and nothing of what can't be seen";
+  }
+}
+
+TEST(Renderer, TheNearerGlassCountsMore) {
+  Stage stage;
+  stage.look_from({0, -6, 1}, {0, 0, 1});
+  stage.add("near", box({1, 0.1, 1}), {0, -1, 1});
+  stage.add("far", box({1, 0.1, 1}), {0, 0, 1});
+  stage.paint("near", kRed);
+  stage.paint("far", kGreen);
+  for (const char* name : {"near", "far"}) stage.set(fmt::format("/visuals/shape/{}/transparency", name), {0.3});
+  const Vec3 front = color(draw(stage), 80, 45);
+  stage.look_from({0, 6, 1}, {0, 0, 1});
+  const Vec3 back = color(draw(stage), 80, 45);
+  EXPECT_GT(front.x, front.y);
+  EXPECT_GT(back.y, back.x);
+}
+
+TEST(Renderer, MaterialsAreRows) {
+  Stage stage;
+  stage.add("ball", round(ShapeKind::sphere, 0.5), {0, 0, 1});
+  stage.look_from({0, -3, 1}, {0, 0, 1});
+  for (const double h : {0.0, 0.25, 0.5, 0.75}) {
+    stage.paint("ball", {h, 1, 1});
+    stage.set("/visuals/look/style", {1});
+    stage.set("/visuals/shape/ball/specular_scale", {0});
+    stage.set("/visuals/look/rim", {0});
+    const double seen = hue(color(draw(stage), 88, 40));
+    const double off = std::abs(seen - h);
+    EXPECT_LT(std::min(off, 1 - off), 0.06) << h << " is seen as " << seen;
+  }
+  stage.paint("ball", {0, 0, 1});
+  const double lit = brightness(draw(stage), 88, 40);
+  stage.set("/visuals/shape/ball/diffuse_scale", {0});
+  const double unlit = brightness(draw(stage), 88, 40);
+  stage.set("/visuals/shape/ball/ambient_scale", {0});
+  EXPECT_GT(lit, unlit + 15);
+  EXPECT_LT(brightness(draw(stage), 88, 40), 20) << "no light of any kind, but a little fog";
+}
+
+TEST(Renderer, ExposureBrightensAndNothingIsBlack) {
+  Stage stage;
+  stage.add("ball", round(ShapeKind::sphere, 0.5), {0, 0, 0.5});
+  stage.set("/visuals/look/style", {1});
+  double before = -1;
+  for (const double exposure : {0.0, 0.3, 1.0, 4.0}) {
+    stage.set("/visuals/look/exposure", {exposure});
+    const double now = brightness(draw(stage));
+    EXPECT_GT(now, before + 1) << exposure;
+    before = now;
+  }
+}
+
+TEST(Renderer, TheSamePictureTwiceIsTheSameToTheBit) {
+  Stage stage;
+  stage.add("ball", round(ShapeKind::sphere, 0.5), {0, 0, 0.5});
+  const auto now = stage.snapshot();
+  const Pixels first = draw(*now, 160, 90, Quality::high);
+  (void)draw(*now, 31, 17, Quality::high);
+  EXPECT_EQ(draw(*now, 160, 90, Quality::high).bytes, first.bytes);
+}
+
+TEST(Renderer, NothingToDrawAndOnePixelAreFine) {
+  Stage stage;
+  for (const Quality quality : {Quality::low, Quality::medium, Quality::high}) {
+    for (const auto& [width, height] : {std::pair{1, 1}, {1, 50}, {50, 1}, {0, 0}}) {
+      const Pixels picture = draw(stage, width, height, quality);
+      EXPECT_EQ(picture.bytes.size(), 4u * static_cast<unsigned>(std::max(width, 1) * std::max(height, 1)));
+      EXPECT_EQ(picture.at(0, 0)[3], 255);
+    }
+  }
+}
+
+TEST(Renderer, ATooLargePictureIsRefused) {
+  Stage stage;
+  Renderer& small = renderer(Quality::low);
+  const Result<void> drawn = small.draw(*stage.snapshot(), small.largest() + 1, 10);
+  ASSERT_FALSE(drawn.ok());
+  EXPECT_NE(drawn.error().find("too large"), std::string::npos) << drawn.error();
+  EXPECT_EQ(draw(stage, 20, 10).width, 20) << "and the next one is drawn";
+}
+
+TEST(Renderer, AbsurdNumbersDrawSomething) {
+  Stage stage;
+  stage.add("ball", round(ShapeKind::sphere, 1e4), {3e4, 0, 0});
+  stage.add("dust", box(Vec3(1e-4)), {0, 0, 1});
+  stage.add("disc", round(ShapeKind::cylinder, 5, 1e-4), {0, 0, 2});
+  stage.add("cone", round(ShapeKind::cone, 1e-4, 10), {0, 1, 2});
+  stage.add("plane", plane());
+  for (const char* name : {"ball", "dust", "disc", "cone", "plane"}) {
+    for (const char* row : {"ambient_scale", "diffuse_scale", "specular_scale"})
+      stage.set(fmt::format("/visuals/shape/{}/{}", name, row), {10});
+    stage.set(fmt::format("/visuals/shape/{}/specular_pow", name), {1000});
+    stage.set(fmt::format("/visuals/shape/{}/transparency", name), {0.999});
+  }
+  for (const char* row : {"exposure", "ambient", "lamp", "rim", "fog", "grid"})
+    stage.set(fmt::format("/visuals/look/{}", row), {10});
+  stage.set("/visuals/look/mirror", {3});
+  stage.set("/visuals/camera/near", {1e4});
+  stage.set("/visuals/camera/far", {0.01});
+  EXPECT_EQ(draw(stage, 64, 36, Quality::high).at(0, 0)[3], 255);
+  stage.set("/visuals/camera/fovy", {170});
+  stage.set("/visuals/camera/near", {1e-4});
+  stage.set("/visuals/camera/far", {1e7});
+  stage.set("/visuals/camera/aspect", {100});
+  EXPECT_GT(brightness(draw(stage, 64, 36, Quality::high)), 1);
+}
+
+TEST(Renderer, ManyPartsOfEveryKind) {
+  Stage stage;
+  const ShapeModel models[] = {box(Vec3(0.1)), round(ShapeKind::sphere, 0.05), round(ShapeKind::capsule, 0.03, 0.1),
+                               round(ShapeKind::cylinder, 0.05, 0.1), round(ShapeKind::cone, 0.05, 0.1)};
+  std::vector<Shape*> shapes;
+  for (const ShapeModel& model : models)
+    shapes.push_back(*stage.world.add_shape(fmt::format("s{}", shapes.size()), model));
+  Body& body = **stage.world.add_body("many");
+  for (int i = 0; i < 3000; i++) {
+    const Vec3 at(0.2 * (i % 60) - 6, 0.2 * (i / 60) - 5, 0.1);
+    ASSERT_TRUE(
+        body.add_part(fmt::format("p{}", i), *shapes[static_cast<std::size_t>(i) % 5], 0, {at, quat_identity()}).ok());
+  }
+  stage.set("/visuals/look/style", {1});
+  const auto all = stage.snapshot();
+  const Pixels picture = draw(*all, 64, 36);
+  stage.world.remove_body(body);
+  EXPECT_NE(draw(stage, 64, 36).bytes, picture.bytes) << "they vanish at once";
+}
+
+}  // namespace
+}  // namespace limber::view_test

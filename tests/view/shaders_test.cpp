@@ -1,0 +1,104 @@
+// Shaders in a folder: read anew when they are saved; a broken one says why, and the last good one draws on.
+#include "view/shaders.h"
+
+#include <filesystem>
+#include <fstream>
+#include <span>
+
+#include <unistd.h>
+
+#include "base/embedded.h"
+#include "view/stage.h"
+
+namespace limber {
+std::span<const EmbeddedFile> shader_files();
+}
+
+namespace limber::view_test {
+namespace {
+
+// a copy of shaders/ that goes when the test is over
+class ShaderFolder {
+ public:
+  ShaderFolder() : path_(std::filesystem::path(::testing::TempDir()) / fmt::format("limber_shaders_{}", ::getpid())) {
+    std::filesystem::create_directories(path_);
+    for (const EmbeddedFile& file : shader_files()) write(std::string(file.name), std::string(file.text));
+  }
+  ~ShaderFolder() {
+    std::error_code ignored;
+    std::filesystem::remove_all(path_, ignored);
+  }
+  ShaderFolder(const ShaderFolder&) = delete;
+  ShaderFolder& operator=(const ShaderFolder&) = delete;
+
+  std::string path() const { return path_.string(); }
+  void write(const std::string& name, const std::string& text) const { std::ofstream(path_ / name) << text; }
+  static std::string text(std::string_view name) { return std::string(find_embedded(shader_files(), name)->text); }
+
+ private:
+  std::filesystem::path path_;
+};
+
+constexpr const char* kBlue = "out vec4 color;\nvoid main() { color = vec4(0.0, 0.0, 1.0, 1.0); }\n";
+
+TEST(Shaders, TheFilesInsideAreThoseOfTheFolder) {
+  std::size_t count = 0;
+  for (const auto& entry : std::filesystem::directory_iterator(std::string(LIMBER_SOURCE_DIR) + "/shaders")) {
+    std::ifstream in(entry.path());
+    const std::string text{std::istreambuf_iterator<char>(in), {}};
+    EXPECT_EQ(ShaderFolder::text(entry.path().filename().string()), text) << entry.path();
+    count++;
+  }
+  EXPECT_EQ(shader_files().size(), count);
+}
+
+TEST(Shaders, ASavedOneIsTakenABrokenOneIsNamed) {
+  (void)context();
+  const ShaderFolder folder;
+  Stage stage;
+  stage.add("box", box(Vec3(1)), {0, 0, 1});
+  const auto now = stage.snapshot();
+  const auto made = Renderer::make(folder.path(), Quality::low);
+  ASSERT_TRUE(made.ok()) << made.error();
+  Renderer& renderer = **made;
+  const auto picture = [&] {
+    EXPECT_TRUE(renderer.draw(*now, 64, 36).ok());
+    return renderer.read();
+  };
+  const Pixels first = picture();
+  EXPECT_FALSE(renderer.renew_shaders()) << "nothing was saved";
+
+  folder.write("shape.frag", "out vec4 color;\n\nvoid main() { color = vec4(blue); }\n");
+  (void)renderer.renew_shaders();
+  EXPECT_NE(renderer.shader_fault().find(folder.path() + "/shape.frag:3"), std::string::npos)
+      << renderer.shader_fault();
+  EXPECT_NE(renderer.shader_fault().find("blue"), std::string::npos);
+  EXPECT_EQ(picture().bytes, first.bytes) << "the last good one draws on";
+
+  folder.write("shape.frag", kBlue);
+  EXPECT_TRUE(renderer.renew_shaders());
+  EXPECT_EQ(renderer.shader_fault(), "");
+  const Vec3 c = color(picture(), 32, 18);
+  EXPECT_LT(c.x, 5);
+  EXPECT_GT(c.z, 250);
+
+  folder.write("common.glsl", "oh\n" + ShaderFolder::text("common.glsl"));
+  EXPECT_FALSE(renderer.renew_shaders());
+  EXPECT_NE(renderer.shader_fault().find(folder.path() + "/common.glsl:"), std::string::npos)
+      << renderer.shader_fault();
+  EXPECT_GT(color(picture(), 32, 18).z, 250);
+}
+
+TEST(Shaders, AFolderThatIsBrokenFromTheStartIsDrawnWithThoseInside) {
+  (void)context();
+  const ShaderFolder folder;
+  folder.write("sky.frag", "this is no shader\n");
+  const auto made = Renderer::make(folder.path(), Quality::low);
+  ASSERT_TRUE(made.ok()) << made.error();
+  EXPECT_NE((*made)->shader_fault().find("/sky.frag:1"), std::string::npos) << (*made)->shader_fault();
+  Stage stage;
+  EXPECT_TRUE((*made)->draw(*stage.snapshot(), 16, 9).ok());
+}
+
+}  // namespace
+}  // namespace limber::view_test
