@@ -1,6 +1,8 @@
 // A walk over the store for a plan; along the plan for a preset.
 #include "engine/preset_taker.h"
 
+#include <sys/mman.h>
+
 #include <algorithm>
 #include <bit>
 #include <map>
@@ -18,6 +20,16 @@ namespace limber {
 namespace {
 
 constexpr std::size_t kMostPlans = 8;
+
+// many megabytes that are touched for the first time would be a fault every 4 KB; without large pages it goes as well
+void ask_for_large_pages(const std::vector<double>& room) {
+  constexpr std::uintptr_t kPage = 4096;
+  constexpr std::size_t kLarge = std::size_t{4} << 20u;
+  const std::size_t bytes = room.capacity() * sizeof(double);
+  if (bytes < kLarge) return;
+  const auto begin = (reinterpret_cast<std::uintptr_t>(room.data()) + kPage - 1) / kPage * kPage;
+  (void)madvise(reinterpret_cast<void*>(begin), bytes - kPage, MADV_HUGEPAGE);
+}
 
 PresetRow preset_row(const Row& row) {
   const RowType type = row.type == RowType::integer ? RowType::number : row.type;
@@ -246,6 +258,7 @@ Result<std::shared_ptr<const Preset>> PresetTaker::take(const Store& store, std:
 std::shared_ptr<const Preset> PresetTaker::copy(const Store& store, const Plan& plan, std::string name) {
   auto preset = std::make_shared<Preset>(Preset{std::move(name), plan.choice, plan.shape, {}});
   preset->values.reserve(plan.shape->width());
+  ask_for_large_pages(preset->values);
   for (const Piece& piece : plan.pieces) {
     const double* const from = (piece.live ? store.live() : store.kept()).data() + piece.from;
     preset->values.insert(preset->values.end(), from, from + piece.count);
