@@ -202,7 +202,7 @@ TEST(DocsOsc, ThePdPatchPlaysAndIsAnswered) {
 }
 
 TEST(DocsOsc, ThePdPatchOfPresetsStoresRecallsAndGlides) {
-  Player player;
+  PagePlayer player;
   const std::string patch = LIMBER_SOURCE_DIR "/docs/examples/presets.pd";
   // each time a Pure Data of its own; it has done all when the names are answered
   const auto play = [&](const std::vector<std::string>& sends, const std::string& names) {

@@ -6,7 +6,7 @@
 namespace limber::app_test {
 namespace {
 
-constexpr const char* kBall = R"(
+constexpr const char* kFallingBall = R"(
 local ball = sim:add_body("ball")
 ball:add_part("ball", sim:add_sphere_shape("ball", 0.1), { position = vec3(0, 0, 1) })
 sim:on_step(function() if sim.tick % 60 == 0 then print("tick") end end)
@@ -36,7 +36,7 @@ std::vector<std::string> quiet(const std::string& scene, std::vector<std::string
 TEST(Window, OpensWhereThereIsADisplayAndEndsCleanly) {
   Display display;
   const Folder folder;
-  const std::string scene = folder.file("s.lua", kBall);
+  const std::string scene = folder.file("s.lua", kFallingBall);
   Running running(limber(quiet(scene, {"--hash"}), display.environment()));
   ASSERT_TRUE(running.wait_for("limber: window 64 × 36, drawn by ")) << running.err();
   ASSERT_TRUE(running.wait_for("--quality high looks better")) << "software picks low by itself";
@@ -55,7 +55,7 @@ TEST(Window, OpensWhereThereIsADisplayAndEndsCleanly) {
 TEST(Window, TheShowOutlivesTheDisplay) {
   Display display;
   const Folder folder;
-  Running running(limber(quiet(folder.file("s.lua", kBall), {"--hash"}), display.environment()));
+  Running running(limber(quiet(folder.file("s.lua", kFallingBall), {"--hash"}), display.environment()));
   ASSERT_TRUE(running.wait_for("limber: window ")) << running.err();
   ASSERT_TRUE(running.wait_for("tick", true));
   display.end();
@@ -69,7 +69,7 @@ TEST(Window, TheShowOutlivesTheDisplay) {
 
 TEST(Window, WithoutOneItSaysWhy) {
   const Folder folder;
-  const std::string scene = folder.file("s.lua", kBall);
+  const std::string scene = folder.file("s.lua", kFallingBall);
   const auto said = [&](const std::vector<std::string>& before, std::vector<std::string> more) {
     more.insert(more.end(), {"--ticks", "2"});
     const Ran ran = Running(limber(quiet(scene, more), before)).finish();
@@ -88,7 +88,7 @@ TEST(Window, AFaultySceneLeavesAnEmptyStageThatWaits) {
   const std::string scene = folder.file("s.lua", "oh no\n");
   Running running(limber(quiet(scene), display.environment()));
   ASSERT_TRUE(running.wait_for("waits for the mended file")) << running.err();
-  folder.file("s.lua", kBall);
+  folder.file("s.lua", kFallingBall);
   ASSERT_TRUE(running.wait_for("tick", true)) << running.err();
   running.signal(SIGINT);
   EXPECT_EQ(running.finish().code, 0);
