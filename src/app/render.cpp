@@ -18,26 +18,34 @@ namespace limber {
 namespace {
 
 constexpr double kSayEvery = 2;  // s
+constexpr int kMostIdle = 1000;
 
 // the two snapshots around a moment
 class Moments {
  public:
-  Moments(Engine& engine, EngineLink& link) : engine_(engine), link_(link) { before_ = now_ = link.snapshots.read(); }
+  Moments(Engine& engine, EngineLink& link, const std::function<bool()>& cancel)
+      : engine_(engine), link_(link), cancel_(cancel) {
+    before_ = now_ = link.snapshots.read();
+  }
 
-  /// Ticks until there. False: time stands still.
-  bool go_to(double seconds) {
+  enum class Went : std::uint8_t { there, stuck, cancelled };
+  /// Ticks until there. `stuck`: time stands still.
+  Went go_to(double seconds) {
+    int idle = 0;  // ticks without time
     while (elapsed_ < seconds - 1e-9) {
+      if (cancel_()) return Went::cancelled;
       before_ = now_;
       engine_.tick();
       link_.outbox.drain(gone_);
       now_ = link_.snapshots.read();
       // after a reset time begins anew; the film goes on
       const double step = now_->time >= before_->time ? now_->time - before_->time : now_->time;
-      if (step <= 0 && now_->paused) return false;
+      idle = step > 0 ? 0 : idle + 1;
+      if (idle > 0 && (now_->paused || idle > kMostIdle)) return Went::stuck;
       elapsed_before_ = elapsed_;
       elapsed_ += step;
     }
-    return true;
+    return Went::there;
   }
   const Snapshot& before() const { return *before_; }
   const Snapshot& now() const { return *now_; }
@@ -49,6 +57,7 @@ class Moments {
  private:
   Engine& engine_;
   EngineLink& link_;
+  const std::function<bool()>& cancel_;
   std::shared_ptr<const Snapshot> before_, now_;
   double elapsed_ = 0;
   double elapsed_before_ = 0;
@@ -83,7 +92,9 @@ Rendered failed(int code, const std::string& text) { return {fail(code, text), f
 
 Rendered draw_still(const PictureOptions& options, const PictureSize& size, Renderer& renderer, Moments& moments) {
   const double at = options.at.value_or(0);
-  if (!moments.go_to(at)) return failed(kInput, "time stands still: the scene is paused before --at");
+  const Moments::Went went = moments.go_to(at);
+  if (went == Moments::Went::cancelled) return {kFine, true};
+  if (went == Moments::Went::stuck) return failed(kInput, "time stands still: the scene is paused before --at");
   if (const auto drawn = renderer.draw(moments.before(), moments.now(), moments.mix(at), size.width, size.height);
       !drawn)
     return failed(kMachine, drawn.error());
@@ -103,23 +114,29 @@ Rendered draw_film(const PictureOptions& options, const PictureSize& size, Rende
   Progress progress(frames);
   std::uint64_t done = 0;
   bool cancelled = false;
-  for (; done < frames && !cancelled; done++) {
+  for (; done < frames; done++) {
     const double at = static_cast<double>(done) / fps;
-    if (!moments.go_to(at))
+    const Moments::Went went = moments.go_to(at);
+    if (went == Moments::Went::stuck)
       return failed(kInput, fmt::format("time stands still: the scene is paused at {:.2f} s", at));
+    if (went == Moments::Went::cancelled || cancel()) {
+      cancelled = true;
+      break;
+    }
     if (const auto drawn = renderer.draw(moments.before(), moments.now(), moments.mix(at), size.width, size.height);
         !drawn)
       return failed(kMachine, drawn.error());
     if (const auto added = (*film)->add(renderer.read()); !added) return failed(kMachine, added.error());
     progress.tell(done + 1);
-    cancelled = cancel();
   }
   if (const auto whole = (*film)->finish(); !whole) return failed(kMachine, whole.error());
   fmt::print(stderr, "limber: {}: {} frames, {} × {}, {} a second{}\n", printable(options.render), done, size.width,
              size.height, number_text(fps), done < frames ? fmt::format("; cancelled, {} were asked for", frames) : "");
   // to the end, as a run of that duration goes
-  if (!cancelled && !moments.go_to(duration)) return failed(kInput, "time stands still: the scene is paused");
-  return {kFine, cancelled};
+  if (cancelled) return {kFine, true};
+  const Moments::Went went = moments.go_to(duration);
+  if (went == Moments::Went::stuck) return failed(kInput, "time stands still: the scene is paused");
+  return {kFine, went == Moments::Went::cancelled};
 }
 
 }  // namespace
@@ -136,7 +153,7 @@ Rendered render(const PictureOptions& options, Engine& engine, EngineLink& link,
   fmt::print(stderr, "limber: drawn by {}\n", gl_driver());
   if (gl_is_software() && quality != Quality::low && !options.render.empty())
     fmt::print(stderr, "limber: that is software, and takes its time; --quality low is several times faster\n");
-  Moments moments(engine, link);
+  Moments moments(engine, link, cancel);
   if (options.render.empty()) return draw_still(options, *size, **renderer, moments);
   return draw_film(options, *size, **renderer, moments, duration.value_or(0), cancel);
 }

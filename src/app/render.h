@@ -14,7 +14,8 @@ struct Rendered {
   bool cancelled = false;  ///< By `cancel`: what was drawn so far is whole.
 };
 
-/// The engine has started and nobody else runs it: it ticks on this thread. `cancel` is asked before each frame.
+/// The engine has started and nobody else runs it: it ticks on this thread. `cancel` is asked before each frame and
+/// tick.
 Rendered render(const PictureOptions& options, Engine& engine, EngineLink& link, std::optional<double> duration,
                 const std::function<bool()>& cancel);
 

@@ -56,12 +56,13 @@ void WindowShow::send(std::vector<Message> messages) {
   link_.wake_engine();
 }
 
-// a picture is drawn one interval late, so that there are two snapshots around it
+// a picture is drawn one tick late, so that there are two snapshots around it; where ticks come faster than pictures,
+// the newest is drawn
 void WindowShow::look_at_snapshots(double now) {
   const std::shared_ptr<const Snapshot> newest = link_.snapshots.read();
   if (newest == nullptr || newest == now_) return;
   if (now_ == nullptr) home_ = orbit_of(camera_of(*newest));
-  const bool moves = now_ != nullptr && newest->tick > now_->tick && newest->drawing == now_->drawing;
+  const bool moves = now_ != nullptr && newest->tick == now_->tick + 1 && newest->drawing == now_->drawing;
   before_ = moves ? now_ : newest;
   if (moves || now_ == nullptr) {
     interval_ = std::min(now - came_, kLongestInterval);
