@@ -83,8 +83,8 @@ inline Offscreen& context() {
 }
 
 inline Renderer& renderer(Quality quality) {
+  (void)context();  // made before them, it goes after them
   static std::map<Quality, std::unique_ptr<Renderer>> made;
-  (void)context();
   std::unique_ptr<Renderer>& one = made[quality];
   if (one == nullptr) {
     Result<std::unique_ptr<Renderer>> fresh = Renderer::make("", quality);
