@@ -271,6 +271,14 @@ int play_scene(const PlayOptions& options, EngineOptions engine_options, const O
   std::optional<SceneWatch> scene_watch;
   if (!options.fast || options.watch) scene_watch.emplace(link, engine, scene_file);
   QueryServer query(link, query_doors(network, osc.allow));
+  const auto close = [&](bool ended) {
+    scene_watch.reset();
+    engine.finish_saving();
+    query.stop();
+    network.stop();
+    console.stop();
+    return finish(options, engine, ended);
+  };
   bool interrupted = false;
   {
     Show show(engine);
@@ -291,21 +299,14 @@ int play_scene(const PlayOptions& options, EngineOptions engine_options, const O
       log_error("the display is lost; playing on headless");
       const bool ended = watch(show, engine, link, signals, nullptr);
       show.end();
-      scene_watch.reset();
-      network.stop();
-      const int code = finish(options, engine, ended);
+      const int code = close(ended);
       std::fflush(nullptr);
       std::_Exit(code);
     });
     interrupted = watch(show, engine, link, signals, window.get());
     Window::on_display_lost({});
   }
-  scene_watch.reset();
-  engine.finish_saving();
-  query.stop();
-  network.stop();
-  console.stop();
-  return finish(options, engine, interrupted);
+  return close(interrupted);
 }
 
 // a still or a film: time goes as fast as it is drawn, and nobody comes in from outside
