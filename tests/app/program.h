@@ -137,6 +137,13 @@ inline std::vector<std::string> limber(std::vector<std::string> args, std::vecto
   return before;
 }
 
+/// Before a program that draws: the leak sanitizer stops a process's threads to look at them, and crashes now and then
+/// where they are a software driver's.
+inline std::vector<std::string> without_leak_search() {
+  const char* const options = std::getenv("ASAN_OPTIONS");
+  return {"env", fmt::format("ASAN_OPTIONS={}:detect_leaks=0", options == nullptr ? "" : options)};
+}
+
 inline Ran run(std::vector<std::string> args, const std::string& folder = LIMBER_SOURCE_DIR) {
   return Running(limber(std::move(args)), folder).finish();
 }

@@ -15,11 +15,6 @@ ball:add_part("ball", sim:add_sphere_shape("ball", 0.3), { position = vec3(0, 0,
 sim:on_step(function() if sim.tick == 20 then print("begun") end end)
 )";
 
-std::string bytes(const std::string& file) {
-  std::ifstream in(file, std::ios::binary);
-  return {std::istreambuf_iterator<char>(in), {}};
-}
-
 std::vector<std::string> names(const std::string& folder) {
   std::vector<std::string> all;
   for (const auto& entry : std::filesystem::directory_iterator(folder)) all.push_back(entry.path().filename());
@@ -27,9 +22,11 @@ std::vector<std::string> names(const std::string& folder) {
   return all;
 }
 
-std::vector<std::string> small(std::vector<std::string> args) {
+std::vector<std::string> small(std::vector<std::string> args, const std::vector<std::string>& variables = {}) {
   args.insert(args.end(), {"--size", "32x18", "--quality", "low"});
-  return args;
+  std::vector<std::string> before = without_leak_search();
+  before.insert(before.end(), variables.begin(), variables.end());
+  return limber(std::move(args), std::move(before));
 }
 
 bool has_ffmpeg() { return Running({"sh", "-c", "command -v ffmpeg && command -v ffprobe"}).finish().code == 0; }
@@ -39,7 +36,7 @@ TEST(Render, FrameKShowsTheTimeKByFps) {
   const std::string scene = folder.file("fall.lua", kFall);
   const std::string shots = folder.file("shots/note", "");
   const std::string pattern = folder.path() + "/shots/shot_%03d.png";
-  const Ran film = run(small({scene, "--render", pattern, "--fps", "25", "--duration", "0.4", "--hash"}));
+  const Ran film = Running(small({scene, "--render", pattern, "--fps", "25", "--duration", "0.4", "--hash"})).finish();
   EXPECT_EQ(film.code, 0) << film.err;
   EXPECT_EQ(names(folder.path() + "/shots").size(), 11u) << "ten frames and the note";
   EXPECT_EQ(film.out.substr(film.out.find("hash")),
@@ -47,18 +44,18 @@ TEST(Render, FrameKShowsTheTimeKByFps) {
       << "the world is that of a headless run";
   for (const int frame : {0, 3, 7}) {  // 7/25 s lies between two ticks
     const std::string still = fmt::format("{}/still_{}.png", folder.path(), frame);
-    const Ran shot = run(small({scene, "--screenshot", still, "--at", fmt::format("{}", frame / 25.0)}));
+    const Ran shot = Running(small({scene, "--screenshot", still, "--at", fmt::format("{}", frame / 25.0)})).finish();
     EXPECT_EQ(shot.code, 0) << shot.err;
-    EXPECT_EQ(bytes(still), bytes(fmt::format("{}/shots/shot_{:03}.png", folder.path(), frame))) << frame;
+    EXPECT_EQ(content(still), content(fmt::format("{}/shots/shot_{:03}.png", folder.path(), frame))) << frame;
   }
-  EXPECT_NE(bytes(folder.path() + "/shots/shot_003.png"), bytes(folder.path() + "/shots/shot_007.png"));
+  EXPECT_NE(content(folder.path() + "/shots/shot_003.png"), content(folder.path() + "/shots/shot_007.png"));
 }
 
 TEST(Render, AVideoHasItsFrames) {
   const Folder folder;
   const std::string scene = folder.file("fall.lua", kFall);
   const std::string video = folder.path() + "/fall.mp4";
-  const Ran film = run(small({scene, "--render", video, "--fps", "60", "--seconds", "0.5"}));
+  const Ran film = Running(small({scene, "--render", video, "--fps", "60", "--seconds", "0.5"})).finish();
   if (!has_ffmpeg()) {
     EXPECT_EQ(film.code, 3);
     EXPECT_NE(film.err.find("apt-get install ffmpeg"), std::string::npos) << film.err;
@@ -76,8 +73,7 @@ TEST(Render, WithoutFfmpegItSaysHowToGetIt) {
   const Folder folder;
   const std::string scene = folder.file("fall.lua", kFall);
   const std::string video = folder.path() + "/fall.mp4";
-  const Ran film =
-      Running(limber(small({scene, "--render", video, "--duration", "0.1"}), {"env", "PATH=/nowhere"})).finish();
+  const Ran film = Running(small({scene, "--render", video, "--duration", "0.1"}, {"PATH=/nowhere"})).finish();
   EXPECT_EQ(film.code, 3);
   EXPECT_NE(film.err.find("apt-get install ffmpeg"), std::string::npos) << film.err;
   EXPECT_EQ(names(folder.path()), std::vector<std::string>{"fall.lua"});
@@ -89,7 +85,7 @@ TEST(Render, CtrlCLeavesAWholeShorterFilm) {
     const Folder folder;
     const std::string scene = folder.file("fall.lua", kFall);
     const std::string name = folder.path() + (video ? "/fall.mp4" : "/shot_%05d.png");
-    Running running(limber(small({scene, "--render", name, "--duration", "1000"})));
+    Running running(small({scene, "--render", name, "--duration", "1000"}));
     ASSERT_TRUE(running.wait_for("begun", true)) << running.err();
     running.signal(SIGINT);
     const Ran ran = running.finish();
@@ -98,7 +94,7 @@ TEST(Render, CtrlCLeavesAWholeShorterFilm) {
     for (const std::string& file : names(folder.path())) {
       EXPECT_EQ(file.find(".part"), std::string::npos) << file;
       if (file.ends_with(".png")) {
-        EXPECT_TRUE(bytes(folder.path() + "/" + file).ends_with("IEND\xae\x42\x60\x82"));
+        EXPECT_TRUE(content(folder.path() + "/" + file).ends_with("IEND\xae\x42\x60\x82"));
       }
     }
     if (video) {
@@ -110,8 +106,9 @@ TEST(Render, CtrlCLeavesAWholeShorterFilm) {
 TEST(Render, TimeThatStandsStillIsSaid) {
   const Folder folder;
   const std::string scene = folder.file("fall.lua", kFall);
-  const Ran ran =
-      run(small({scene, "--screenshot", folder.path() + "/a.png", "--at", "1", "--set", "/physics/sim/paused=true"}));
+  const Ran ran = Running(small({scene, "--screenshot", folder.path() + "/a.png", "--at", "1", "--set",
+                                 "/physics/sim/paused=true"}))
+                      .finish();
   EXPECT_EQ(ran.code, 1);
   EXPECT_NE(ran.err.find("time stands still"), std::string::npos) << ran.err;
 }
@@ -142,7 +139,7 @@ TEST(Render, WrongUsageNamesTheCure) {
     EXPECT_NE(ran.err.find(c.said), std::string::npos) << ran.err;
   }
   const Folder folder;
-  const Ran nowhere = run(small({folder.file("s.lua", kFall), "--screenshot", "/nowhere/a.png"}));
+  const Ran nowhere = Running(small({folder.file("s.lua", kFall), "--screenshot", "/nowhere/a.png"})).finish();
   EXPECT_EQ(nowhere.code, 1);
   EXPECT_NE(nowhere.err.find("'/nowhere/a.png'"), std::string::npos) << nowhere.err;
 }

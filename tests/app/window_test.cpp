@@ -20,7 +20,11 @@ class Display {
     name_ = ":" + server_.out().substr(0, server_.out().find('\n'));
   }
   void end() { server_.signal(SIGKILL); }
-  std::vector<std::string> environment() const { return {"env", "DISPLAY=" + name_, "LIBGL_ALWAYS_SOFTWARE=1"}; }
+  std::vector<std::string> environment() const {
+    std::vector<std::string> all = without_leak_search();
+    all.insert(all.end(), {"DISPLAY=" + name_, "LIBGL_ALWAYS_SOFTWARE=1"});
+    return all;
+  }
 
  private:
   Running server_;
