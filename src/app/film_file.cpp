@@ -102,6 +102,7 @@ Result<void> FilmFile::start_ffmpeg(int width, int height, double fps) {
                                           "-movflags", "+faststart",
                                           "-y",        beside_};
   std::vector<char*> argv;
+  argv.reserve(words.size() + 1);
   for (const std::string& word : words) argv.push_back(const_cast<char*>(word.c_str()));
   argv.push_back(nullptr);
   posix_spawn_file_actions_t files;
