@@ -7,7 +7,7 @@
 #include "base/result.h"
 #include "view/renderer.h"
 
-namespace CLI {
+namespace CLI {  // NOLINT(readability-identifier-naming): its name
 class App;
 }
 

@@ -236,7 +236,7 @@ Result<void> open_ports(const EngineLink& link, const OscOptions& osc, const Que
                         QueryServer& query) {
   if (Result<void> open = network.start(); !open) return open;
   const std::optional<ListenAddress> at = query_address(wish, effective_plan(osc, link.osc_plan.read().get()));
-  const Result<void> open = at ? query.start(*at) : Result<void>();
+  Result<void> open = at ? query.start(*at) : Result<void>();
   if (!open && !osc.optional) return open;
   if (!open) log_warning("{}", open.error());
   for (const std::string& line : network.lines()) fmt::print(stderr, "limber: {}\n", line);
