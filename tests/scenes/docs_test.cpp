@@ -73,7 +73,8 @@ TEST_P(PageOfLua, EveryBehaviorOnThePageIsPlayed) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Docs, PageOfLua, testing::Values("docs/scripting.md", "docs/bodies.md", "docs/behaviors.md", "docs/presets.md"),
+INSTANTIATE_TEST_SUITE_P(Docs, PageOfLua,
+                         testing::Values("docs/scripting.md", "docs/bodies.md", "docs/behaviors.md", "docs/presets.md"),
                          [](const auto& page) { return std::filesystem::path(page.param).stem().string(); });
 
 TEST(Docs, TheTutorialIsWhole) { EXPECT_GE(blocks_of_page("docs/scripting.md").size(), 12u); }

@@ -67,7 +67,8 @@ TEST_F(Picture, TheCameraGlidesAndGoesWithAThing) {
   EXPECT_NEAR(read("/visuals/camera/target")[2], height, 1e-9);
   EXPECT_NEAR(read("/visuals/camera/eye")[1], -4, 1e-9);
   stage.tick(40);
-  EXPECT_GT(read("/visuals/camera/target")[2], stage.world.find_body("ball")->pose().position.z + 1) << "it goes with nothing now";
+  EXPECT_GT(read("/visuals/camera/target")[2], stage.world.find_body("ball")->pose().position.z + 1)
+      << "it goes with nothing now";
 }
 
 TEST_F(Picture, WhatIsWrongIsSaid) {
