@@ -289,7 +289,7 @@ int Engine::execute(Message& message, const Origin& origin) {
       images_.note(stage_->store, origin, write.place, write.place.row == outcome.clamped);
   }
   if (!outcome.said.empty()) {
-    log_warning("{}", outcome.said);
+    say_left_out(outcome.said);
     refuse(message.address, origin, outcome.said);
   }
   for (Message& answer : outcome.answers) push_out({Outgoing::To::sender, origin, std::move(answer)});
@@ -334,6 +334,15 @@ void Engine::say_clamped(const Message& message, const Row& row) {
   said_clamped_.push_back(&row);
   log_warning("{}: a value outside {} was brought into this range (said once for {})", printable(message.address),
               range_text(row), row.name);
+}
+
+// a slider on a preset would fill the log
+void Engine::say_left_out(const std::string& text) {
+  constexpr std::size_t kLately = 64;
+  if (std::find(said_left_out_.begin(), said_left_out_.end(), text) != said_left_out_.end()) return;
+  if (said_left_out_.size() >= kLately) said_left_out_.erase(said_left_out_.begin());
+  said_left_out_.push_back(text);
+  log_warning("{} (said once)", text);
 }
 
 void Engine::send_contacts() {

@@ -127,6 +127,7 @@ class Engine : private ScriptHost {
   void publish();
   void make_image(std::uint64_t asks);
   void say_clamped(const Message& message, const Row& row);
+  void say_left_out(const std::string& text);
   void send_contacts();
   void send_transport();
   bool wait_for_tick();
@@ -153,12 +154,13 @@ class Engine : private ScriptHost {
     std::string error;
   };
   std::vector<Command> commands_;
-  std::size_t next_command_ = 0;          // the first that is yet to be done
-  std::uint64_t asks_of_batch_ = 0;       // images asked for before commands_ was taken
-  std::uint64_t asks_ = 0;                // images that may be made: all that came before was done
-  std::vector<Heard> heard_;              // messages of this tick, for the scene's handlers
-  std::vector<Message> wishes_;           // of scripts, about presets
-  std::vector<const Row*> said_clamped_;  // rows whose clamping was said
+  std::size_t next_command_ = 0;            // the first that is yet to be done
+  std::uint64_t asks_of_batch_ = 0;         // images asked for before commands_ was taken
+  std::uint64_t asks_ = 0;                  // images that may be made: all that came before was done
+  std::vector<Heard> heard_;                // messages of this tick, for the scene's handlers
+  std::vector<Message> wishes_;             // of scripts, about presets
+  std::vector<const Row*> said_clamped_;    // rows whose clamping was said
+  std::vector<std::string> said_left_out_;  // lately, of presets
   std::uint64_t faults_ = 0;
   bool was_paused_ = false;
 

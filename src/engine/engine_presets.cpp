@@ -22,7 +22,7 @@ Result<void> Engine::first_hand() {
   if (!options_.preset.empty()) {
     const Outcome outcome = stage_->dispatch.execute({"/preset/recall", {Arg::of(options_.preset)}});
     if (outcome.kind != Outcome::Kind::applied) return Error{fmt::format("--preset: {}", outcome.error)};
-    if (!outcome.said.empty()) log_warning("{}", outcome.said);
+    if (!outcome.said.empty()) say_left_out(outcome.said);
   }
   for (const Message& message : options_.sets) {
     const Outcome outcome = stage_->dispatch.execute(message);
@@ -47,7 +47,7 @@ void Engine::carry_out_wishes() {
       faults_++;
       log_error("{} of a script: {}", wishes_[i].address, outcome.error);
     }
-    if (!outcome.said.empty()) log_warning("{}", outcome.said);
+    if (!outcome.said.empty()) say_left_out(outcome.said);
   }
   wishes_.clear();
 }

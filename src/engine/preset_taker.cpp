@@ -214,6 +214,13 @@ void PresetTaker::forget_store() {
   quiet_ = 0;
 }
 
+// plans hold as long as nothing comes or goes
+void PresetTaker::follow(const Store& store) {
+  if (structure_ == store.structure_version()) return;
+  structure_ = store.structure_version();
+  forget_store();
+}
+
 const PresetTaker::Plan* PresetTaker::known(const PresetChoice& choice) const {
   const auto at = std::find_if(plans_.begin(), plans_.end(), [&](const Plan& plan) { return plan.choice == choice; });
   return at == plans_.end() ? nullptr : &*at;
@@ -225,10 +232,7 @@ const PresetTaker::Plan& PresetTaker::keep(Plan plan) {
 }
 
 void PresetTaker::prepare(const Store& store) {
-  if (structure_ != store.structure_version()) {
-    structure_ = store.structure_version();
-    forget_store();
-  }
+  follow(store);
   if (quiet_ <= kQuiet) quiet_++;
   if (quiet_ <= kQuiet || known({}) != nullptr) return;
   if (ahead_ == nullptr) {
@@ -242,10 +246,7 @@ void PresetTaker::prepare(const Store& store) {
 
 Result<std::shared_ptr<const Preset>> PresetTaker::take(const Store& store, std::string name,
                                                         const PresetChoice& choice) {
-  if (structure_ != store.structure_version()) {
-    structure_ = store.structure_version();
-    forget_store();
-  }
+  follow(store);
   if (const Plan* plan = known(choice)) return copy(store, *plan, std::move(name));
   const bool begun = ahead_ != nullptr && choice == PresetChoice{};
   if (begun) (void)ahead_->go(SIZE_MAX);

@@ -53,6 +53,7 @@ class PresetTaker {
 
   static std::shared_ptr<const Preset> copy(const Store& store, const Plan& plan, std::string name);
 
+  void follow(const Store& store);
   const Plan* known(const PresetChoice& choice) const;
   const Plan& keep(Plan plan);
 

@@ -145,9 +145,14 @@ std::int32_t contact(void* c, std::int32_t index) {
   return kOk;
 }
 
-void camera_glide(void* c, double eye_x, double eye_y, double eye_z, double target_x, double target_y, double target_z,
-                  double seconds) {
-  context_of(c).world->camera_moves().glide({eye_x, eye_y, eye_z}, {target_x, target_y, target_z}, seconds);
+std::int32_t camera_glide(void* c, double eye_x, double eye_y, double eye_z, double target_x, double target_y,
+                          double target_z, double seconds) {
+  const ScriptContext& context = context_of(c);
+  const Vec3 eye(eye_x, eye_y, eye_z);
+  const Vec3 target(target_x, target_y, target_z);
+  if (!is_finite(eye) || !is_finite(target)) return kRefused;
+  context.world->camera_moves().glide(eye, target, seconds);
+  return kOk;
 }
 
 void camera_follow(void* c, std::int32_t slot, std::int32_t generation) {

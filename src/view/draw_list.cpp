@@ -68,7 +68,6 @@ void DrawList::learn(const Snapshot& now) {
   drawing_ = now.drawing;
   meshes_.clear();
   forms_.clear();
-  mesh_numbers_.clear();
   models_.clear();
   std::map<MeshKey, std::uint32_t> numbers;
   for (const DrawnForm& drawn : drawing_->forms) {
@@ -88,7 +87,7 @@ void DrawList::learn(const Snapshot& now) {
     form.size.round = real(size.round);
     const auto [number, fresh] = numbers.try_emplace(form.mesh, static_cast<std::uint32_t>(meshes_.size()));
     if (fresh) meshes_.push_back(form.mesh);
-    mesh_numbers_.push_back(number->second);
+    form.mesh_number = number->second;
     forms_.push_back(form);
   }
 }
@@ -126,8 +125,7 @@ void DrawList::see(const Form& form, const Pose& pose, const DrawEye& eye) {
   const double depth = glm::dot(at.position - eye.at, eye.forward);
   const double pixels = form.reach * eye.pixels / std::max(depth, 0.1);
   const int detail = std::min(kDetails - 1, (pixels > 40 ? 0 : pixels > 12 ? 1 : 2) + eye.coarser);
-  const auto number = mesh_numbers_[static_cast<std::size_t>(&form - forms_.data())];
-  const auto key = number * kDetails + static_cast<std::uint32_t>(detail);
+  const auto key = form.mesh_number * kDetails + static_cast<std::uint32_t>(detail);
   (paint.alpha < 1 ? glassy_ : solid_).push_back({instance, key, real(depth)});
   places_.push_back(place);
   reaches_.push_back(real(form.reach));

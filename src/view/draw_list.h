@@ -81,6 +81,7 @@ class DrawList {
  private:
   struct Form {
     MeshKey mesh;
+    std::uint32_t mesh_number = 0;
     Instance size{};   // its size alone
     double reach = 0;  // radius of a ball around it, m
     Pose offset;       // of the mesh
@@ -102,8 +103,7 @@ class DrawList {
   std::uint64_t painted_ = 0;
   std::vector<MeshKey> meshes_;  // by their number in Seen::key
   std::vector<Form> forms_;
-  std::vector<std::uint32_t> mesh_numbers_;  // of each form
-  std::vector<Instance> paints_;             // by material: its colours alone
+  std::vector<Instance> paints_;  // by material: its colours alone
   std::map<const MeshModel*, std::shared_ptr<const MeshModel>> models_;
   std::vector<Seen> solid_, glassy_;
   std::vector<glm::vec3> places_;

@@ -41,9 +41,7 @@ struct ArmPlayer {
 
   ArmPlayer() {
     EXPECT_TRUE(running.wait_for("playing headless")) << running.err();
-    const std::string mark = "OSC in 127.0.0.1:";
-    const std::size_t at = running.err().find(mark) + mark.size();
-    in = running.err().substr(at, running.err().find('\n', at) - at);
+    in = running.behind("OSC in 127.0.0.1:");
   }
 };
 

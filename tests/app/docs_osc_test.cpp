@@ -169,9 +169,7 @@ struct PagePlayer {
       : running(limber({folder.file("scripts/scene.lua", kPageScene), "--osc-in", "127.0.0.1:0", "--osc-out", out,
                         "--query", "off"})) {
     EXPECT_TRUE(running.wait_for("playing headless")) << running.err();
-    const std::string mark = "OSC in 127.0.0.1:";
-    const std::size_t at = running.err().find(mark) + mark.size();
-    in = running.err().substr(at, running.err().find('\n', at) - at);
+    in = running.behind("OSC in 127.0.0.1:");
   }
   Folder folder;
   Running running;

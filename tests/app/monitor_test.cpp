@@ -21,9 +21,7 @@ struct WatchedStage {
                         "--query", "off"},
                        environment())) {
     EXPECT_TRUE(running.wait_for("playing headless")) << running.err();
-    const std::string mark = "OSC in ";
-    const std::size_t at = running.err().find(mark) + mark.size();
-    in = running.err().substr(at, running.err().find('\n', at) - at);
+    in = running.behind("OSC in ");
   }
   std::vector<std::string> environment() const {
     return {"env", "XDG_RUNTIME_DIR=" + runtime.path(), "TMPDIR=" + runtime.path()};

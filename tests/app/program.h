@@ -101,6 +101,13 @@ class Running {
     return {WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status), out_, err_};
   }
   const std::string& err() const { return err_; }
+  /// What came on stderr behind `mark`, to the end of its line; empty when it did not come.
+  std::string behind(const std::string& mark) const {
+    const std::size_t at = err_.find(mark);
+    if (at == std::string::npos) return {};
+    const std::size_t begin = at + mark.size();
+    return err_.substr(begin, err_.find('\n', begin) - begin);
+  }
   const std::string& out() const { return out_; }
 
  private:

@@ -42,9 +42,7 @@ struct WebPlayer {
     return all;
   }
   std::uint16_t number_behind(const std::string& mark) const {
-    const std::size_t at = running.err().find(mark);
-    return at == std::string::npos ? std::uint16_t{0}
-                                   : static_cast<std::uint16_t>(std::atoi(running.err().c_str() + at + mark.size()));
+    return static_cast<std::uint16_t>(std::atoi(running.behind(mark).c_str()));
   }
 };
 

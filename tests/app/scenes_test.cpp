@@ -16,9 +16,7 @@ struct Evening {
       : running(limber({first, "--osc-in", "127.0.0.1:0", "--osc-out", "off", "--query", "off"},
                        {"env", "XDG_RUNTIME_DIR=" + runtime.path(), "TMPDIR=" + runtime.path()})) {
     EXPECT_TRUE(running.wait_for("playing headless")) << running.err();
-    const std::string mark = "OSC in ";
-    const std::size_t at = running.err().find(mark) + mark.size();
-    in = running.err().substr(at, running.err().find('\n', at) - at);
+    in = running.behind("OSC in ");
   }
   Ran send(std::vector<std::string> words) const {
     words.insert(words.begin(), "send");

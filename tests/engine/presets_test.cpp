@@ -1,6 +1,7 @@
 // Presets through a playing engine: what is stored comes back, whatever happened in between.
 #include "engine/presets.h"
 
+#include "base/log.h"
 #include "engine/edited.h"
 #include "engine/everything.h"
 #include "engine/random_values.h"
@@ -289,6 +290,21 @@ sim:add_body("two"):add_part("tip", ball)
     EXPECT_TRUE(c.said != nullptr && wanted.empty() ? said.empty() : said.starts_with(begin)) << c.what << ": " << said;
     EXPECT_EQ(show.read(c.path), c.value) << c.what;
   }
+}
+
+// a slider between presets sends many a second
+TEST(Presets, WhatIsLeftOutIsAnsweredEachTimeAndLoggedOnce) {
+  Edited edited(kTwo);
+  Show& show = edited.show();
+  show.send("/preset/store", "dusk");
+  show.ticks(1);
+  ASSERT_EQ(edited.edit("{ \"on\", false }, ", ""), Reload::End::applied);
+  const std::uint64_t before = log_count(LogLevel::warning);
+  for (int i = 0; i < 20; i++) {
+    EXPECT_EQ(answer(show, "/preset/recall", "dusk"),
+              "/error /preset/recall preset 'dusk': 1 row is no longer there or of another type (/scene/on)");
+  }
+  EXPECT_EQ(log_count(LogLevel::warning) - before, 1u);
 }
 
 TEST(Presets, RefusalsNameTheCure) {

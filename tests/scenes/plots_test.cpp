@@ -45,11 +45,6 @@ Picture read_picture(const std::string& svg) {
   return picture;
 }
 
-std::string file_text(const std::string& path) {
-  std::ifstream in(path, std::ios::binary);
-  return {std::istreambuf_iterator<char>(in), {}};
-}
-
 // as docs/plots/make takes them apart: "<!-- name.svg -->", then the picture
 std::map<std::string, std::string> drawn() {
   const Ran ran = app_test::run({"docs/plots/behaviors.lua", "--fast", "--ticks", "200", "--strict"});
@@ -73,7 +68,7 @@ TEST(Plots, AreTodays) {
   for (const auto& [name, svg] : pictures) {
     SCOPED_TRACE("docs/plots/" + name + "; docs/plots/make draws it anew");
     const Picture now = read_picture(svg);
-    const Picture committed = read_picture(file_text(LIMBER_SOURCE_DIR "/docs/plots/" + name));
+    const Picture committed = read_picture(app_test::content(LIMBER_SOURCE_DIR "/docs/plots/" + name));
     EXPECT_EQ(now.words, committed.words);
     ASSERT_EQ(now.numbers.size(), committed.numbers.size());
     ASSERT_GT(now.numbers.size(), 100u);
@@ -90,7 +85,7 @@ TEST(Plots, EveryBuiltInTypeHasOneAndItIsOnThePage) {
   for (const std::string& line : lines_of_page("docs/behaviors.md")) page += line + "\n";
   const BehaviorTypes built_in;
   for (const auto& type : built_in.all()) {
-    EXPECT_FALSE(file_text(LIMBER_SOURCE_DIR "/docs/plots/" + type->name + ".svg").empty()) << type->name;
+    EXPECT_FALSE(app_test::content(LIMBER_SOURCE_DIR "/docs/plots/" + type->name + ".svg").empty()) << type->name;
     EXPECT_NE(page.find("![" + type->name + "](plots/" + type->name + ".svg)"), std::string::npos) << type->name;
   }
 }

@@ -75,9 +75,15 @@ TEST_F(Picture, WhatIsWrongIsSaid) {
   EXPECT_NE(error_of("visuals.camera:look_at(vec3(1, 0, 0), vec3(), 0)").find("seconds above 0, not 0"),
             std::string::npos);
   EXPECT_NE(error_of("visuals.camera:look_at(vec3(1, 0, 0), vec3(), 1)").find("use sim:on_start"), std::string::npos);
+  EXPECT_NE(
+      value_of("pcall(function() visuals.camera:look_at(vec3(1, 0, 0), vec3(0, 0, 0), 0 / 0) end)").find("finite"),
+      std::string::npos);
   EXPECT_NE(error_of("visuals.camera:follow(sim)").find("use sim:on_start"), std::string::npos);
-  ASSERT_EQ(stage.play("sim:on_start(function() visuals.camera:follow(sim) end)"), "");
-  ASSERT_EQ(stage.host.faults.size(), 1u);
+  ASSERT_EQ(stage.play("sim:on_start(function() visuals.camera:follow(sim) end)\n"
+                       "sim:on_start(function() visuals.camera:look_at(vec3(0 / 0, 0, 1), vec3(), 1) end)"),
+            "");
+  ASSERT_EQ(stage.host.faults.size(), 2u);
+  EXPECT_NE(stage.host.faults[1].text.find("look_at takes finite numbers"), std::string::npos);
   EXPECT_NE(stage.host.faults[0].text.find("a body, a part, or nil, not sim"), std::string::npos);
   EXPECT_NE(error_of("visuals.camera.projection = { 40, 1, 10, 5 }").find("must be further away"), std::string::npos);
   EXPECT_NE(error_of("visuals.camera.projection = 40").find("takes { fovy, aspect, near, far }"), std::string::npos);

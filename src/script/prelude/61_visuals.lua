@@ -39,7 +39,10 @@ camera.methods.look_at = function(h, eye, target, seconds)
       fail("look_at takes seconds above 0, not %s; without seconds it looks there at once", tostring(seconds))
     end
     P.needs_callback("camera:look_at with seconds")
-    return api.camera_glide(ctx, eye.x, eye.y, eye.z, target.x, target.y, target.z, seconds)
+    if api.camera_glide(ctx, eye.x, eye.y, eye.z, target.x, target.y, target.z, seconds) ~= 0 then
+      fail("look_at takes finite numbers, not %s and %s", describe(eye), describe(target))
+    end
+    return
   end
   camera.setters.eye(h, eye)
   camera.setters.target(h, target)
