@@ -37,8 +37,8 @@ class Paper {
     if ((command_.only_in && line.kind == Kind::out) || (command_.only_out && line.kind == Kind::in)) return true;
     if (begin_ == 0) begin_ = line.time;
     const char* const way = line.kind == Kind::in ? "<" : line.kind == Kind::out ? ">" : "=";
-    fmt::print("{:9.3f} {} {}{}\n", line.time - begin_, way, message ? fmt::format("{:<21} ", line.end) : "",
-               line.text);
+    const std::string_view who = line.end.empty() ? std::string_view("the show") : line.end;
+    fmt::print("{:9.3f} {} {:<21} {}\n", line.time - begin_, way, who, line.text);
     std::fflush(stdout);
     return !command_.count || ++shown_ < *command_.count;
   }

@@ -43,4 +43,7 @@ struct Origin {
   bool operator==(const Origin& other) const { return hand == other.hand && ip == other.ip && port == other.port; }
 };
 
+/// "192.168.1.5:57120"; without an address the hand: "console". [any]
+std::string sender_text(const Origin& origin);
+
 }  // namespace limber

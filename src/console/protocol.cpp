@@ -115,7 +115,9 @@ std::string traffic_line(bool in, double time, std::string_view end, std::string
   return text_of({{in ? "in" : "out", text}, {"time", time}, {"end", end}});
 }
 
-std::string change_line(double time, std::string_view text) { return text_of({{"change", text}, {"time", time}}); }
+std::string change_line(double time, std::string_view who, std::string_view text) {
+  return text_of({{"change", text}, {"time", time}, {"end", who}});
+}
 
 std::string missed_line(std::uint64_t count) { return text_of({{"missed", count}}); }
 

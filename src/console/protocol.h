@@ -45,7 +45,7 @@ struct ConsoleLine {
     refused,     ///< `text` says why the connection ends.
     in,          ///< A message came: `text`, from `end`, at `time`.
     out,         ///< One went out to `end`.
-    change,      ///< A value is another: `text` is its path and value.
+    change,  ///< A value is another: `text` is its path, what it was and what it is; `end`: who set it, if a hand did.
   };
   Kind kind = Kind::done;
   std::uint64_t id = 0;
@@ -65,7 +65,7 @@ std::string hello_line(std::string_view version, int pid, std::string_view scene
 std::string answer_line(std::uint64_t id, const Evaluation& said);
 std::string log_line(std::uint64_t id, const LogLine& line);
 std::string traffic_line(bool in, double time, std::string_view end, std::string_view text);
-std::string change_line(double time, std::string_view text);
+std::string change_line(double time, std::string_view who, std::string_view text);
 std::string missed_line(std::uint64_t count);
 std::string refused_line(std::string_view why);
 

@@ -10,6 +10,7 @@
 #include "base/address.h"
 #include "base/clock_seconds.h"
 #include "base/text.h"
+#include "params/row_text.h"
 
 namespace limber {
 
@@ -17,6 +18,11 @@ namespace {
 
 constexpr std::size_t kMostPlaces = 200000;  // values of a pattern that are compared
 constexpr int kWork = 20 * PatternBudget::kMessage;
+constexpr double kLate = 0.5;  // s that an image may be behind
+
+std::string change_text(const std::string& path, const std::string& from, const std::string& to) {
+  return from.empty() && to.empty() ? path : fmt::format("{} {} → {}", path, from, to);
+}
 
 class TrafficWatcher : public Watcher {
  public:
@@ -44,6 +50,7 @@ class ChangeWatcher : public Watcher {
   ChangeWatcher(EngineLink& link, std::string pattern) : link_(link), pattern_(std::move(pattern)) {}
 
   void tell(const std::function<void(std::string)>& say, const std::function<void(std::uint64_t)>&) override {
+    if (asked_ == 0) tell_kept(say);
     const std::shared_ptr<const Image> image = link_.images.read();
     const bool fresh = asked_ != 0 && image != nullptr && image->asks >= asked_;
     if (fresh) hear(image, say);
@@ -58,10 +65,22 @@ class ChangeWatcher : public Watcher {
   };
   static constexpr std::size_t kNew = ~std::size_t{0};
 
+  // what hands have set before anybody watched
+  void tell_kept(const std::function<void(std::string)>& say) const {
+    std::vector<ChangeLine> lines = link_.changes.since(0);
+    std::ranges::stable_sort(lines, {}, &ChangeLine::time);
+    for (const ChangeLine& line : lines) {
+      if (!pattern_.empty() && !address_matches(pattern_, line.path)) continue;
+      say(change_line(line.time, line.who, change_text(line.path, line.from, line.to)));
+    }
+  }
+
   void hear(const std::shared_ptr<const Image>& image, const std::function<void(std::string)>& say) {
     const bool other = image_ == nullptr || image_->tree != image->tree;
     if (other) bind(*image->tree);
     const double now = clock_seconds();
+    const std::unordered_map<std::string, std::string> hands = hands_since(heard_);
+    heard_ = now - kLate;
     for (std::size_t i = 0; image_ != nullptr && i < values_.size(); i++) {
       const std::size_t before = other ? values_[i].before : i;
       if (before == kNew) continue;
@@ -69,7 +88,11 @@ class ChangeWatcher : public Watcher {
       const RowValue is = image->value(values_[i].numbers);
       const Row& row = *values_[i].place.row;
       const bool same = was.text == is.text && std::equal(is.numbers, is.numbers + row.width, was.numbers);
-      if (!same) say(change_line(now, text_of(*image, values_[i], is)));
+      if (same) continue;
+      const std::string path = image->tree->path(values_[i].place);
+      const auto who = hands.find(path);
+      say(change_line(now, who == hands.end() ? "" : who->second,
+                      change_text(path, text_of(row, was), text_of(row, is))));
     }
     image_ = image;
     old_.clear();
@@ -97,21 +120,21 @@ class ChangeWatcher : public Watcher {
     }
   }
 
-  static std::string text_of(const Image& image, const Value& value, const RowValue& is) {
-    const Row& row = *value.place.row;
-    Message message{image.tree->path(value.place), {}};
-    for (std::uint32_t i = 0; i < row.width; i++) {
-      const auto label = static_cast<std::size_t>(std::max(is.numbers[i], 0.0));
-      const bool named = row.type == RowType::choice && label < row.choices.size();
-      message.args.push_back(named ? Arg::of(row.choices[label]) : Arg::of(is.numbers[i]));
-    }
-    if (row.type == RowType::text) message.args.push_back(Arg::of(is.text));
-    return message_text(message);
+  static std::string text_of(const Row& row, const RowValue& value) {
+    return row.type == RowType::text ? printable(value.text) : value_text(row, value.numbers);
+  }
+
+  // who set each path since then, of hands
+  std::unordered_map<std::string, std::string> hands_since(double time) const {
+    std::unordered_map<std::string, std::string> who;
+    for (ChangeLine& line : link_.changes.since(time)) who[line.path] = std::move(line.who);
+    return who;
   }
 
   EngineLink& link_;
   const std::string pattern_;
   std::uint64_t asked_ = 0;
+  double heard_ = clock_seconds();
   std::shared_ptr<const Image> image_;
   std::vector<Value> values_;
   std::vector<Value> old_;  // of the tree before, while another one is compared with it

@@ -37,7 +37,7 @@ class Stopwatch {
 Engine::Engine(EngineLink& link, EngineOptions options)
     : link_(link),
       options_(std::move(options)),
-      stage_(std::make_unique<Stage>(link, presets_)),
+      stage_(std::make_unique<Stage>(link, presets_, edits_)),
       reload_(options_.scene, *this, hand_) {
   link_.wake_engine = [this] { commands_wait_.store(true, std::memory_order_relaxed); };
 }
@@ -49,7 +49,7 @@ Engine::~Engine() {
 Result<void> Engine::start() {
   presets_.open(read_presets(options_.scene));
   if (Result<void> ran = stage_->run(options_.scene, *this, options_.scene_options); !ran) {
-    stage_ = std::make_unique<Stage>(link_, presets_);
+    stage_ = std::make_unique<Stage>(link_, presets_, edits_);
     reload_.begin(*stage_, options_.scene_options);
     presets_.scene_says(reload_.script());
     return ran;
@@ -77,7 +77,7 @@ void Engine::begin_show() {
 
 void Engine::reset() {
   // a scene that fails now leaves the show as it is
-  auto fresh = std::make_unique<Stage>(link_, presets_);
+  auto fresh = std::make_unique<Stage>(link_, presets_, edits_);
   SceneOptions scene_options = options_.scene_options;
   const World& before = stage_->world;
   if (before.seed() != scene_seed_) scene_options.seed = before.seed();  // the performer's
@@ -106,6 +106,7 @@ std::unique_ptr<Stage> Engine::take_stage(std::unique_ptr<Stage> fresh) {
   for (const char* state : {"paused", "speed"}) keep_state(*fresh, state);
   faults_ += stage_->world.health_events();
   std::swap(stage_, fresh);
+  edits_.follow(fresh->store, stage_->store);
   images_.forget_store();
   presets_.forget_store();
   return fresh;
@@ -204,6 +205,8 @@ void Engine::pass(bool may_step) {
   call_handlers();
   if (running && stage.scene != nullptr) stage.scene->tick(stage.world.timestep());
   carry_out_wishes();
+  edits_.end(stage.store);
+  notes_.tell(stage.store);
   times_.scripts = watch.lap();
 
   if (running) {
@@ -244,11 +247,12 @@ void Engine::make_image(std::uint64_t asks) {
 
 void Engine::drain() {
   stage_->dispatch.begin_tick();
-  const Presets::Hands hands(presets_, stage_->store);
+  Hands hands(stage_->world, presets_, edits_, notes_);
   bool taken = false;
   for (int work = kTickWork; work > 0;) {
     if (next_command_ < commands_.size()) {
       Command& command = commands_[next_command_++];
+      hands.begin(command.origin);
       for (Message& message : command.messages) work -= execute(message, command.origin);
       if (command.evaluate != nullptr) evaluate(*command.evaluate);
       continue;
@@ -315,8 +319,9 @@ int Engine::execute(Message& message, const Origin& origin) {
 }
 
 void Engine::call_handlers() {
-  const Presets::Hands hands(presets_, stage_->store);
+  Hands hands(stage_->world, presets_, edits_, notes_);
   for (Heard& heard : heard_) {
+    hands.begin(heard.origin);
     const bool handled = stage_->scene->message(heard.message, heard.origin);
     if (handled || !heard.unknown) continue;
     link_.counters.unknown.fetch_add(1, std::memory_order_relaxed);

@@ -13,6 +13,7 @@
 
 #include "engine/clock.h"
 #include "engine/hand.h"
+#include "engine/hands.h"
 #include "engine/image_maker.h"
 #include "engine/link.h"
 #include "engine/presets.h"
@@ -139,6 +140,8 @@ class Engine : private ScriptHost {
   EngineOptions options_;
   PerformerHand hand_;
   Presets presets_{hand_};
+  Edits edits_{hand_};
+  ChangeNotes notes_{link_.changes};
   std::unique_ptr<Stage> stage_;
   std::uint64_t scene_seed_ = 0;  // as the scene's run left it
   Reload reload_;

@@ -41,6 +41,9 @@ Result<void> Engine::first_hand() {
 
 // what scripts have asked of presets, in the order in which they did
 void Engine::carry_out_wishes() {
+  if (wishes_.empty()) return;
+  Hands hands(stage_->world, presets_, edits_, notes_);
+  hands.begin({Hand::script});
   for (std::size_t i = 0; i < wishes_.size(); i++) {
     const Outcome outcome = stage_->dispatch.execute(wishes_[i]);
     if (outcome.kind == Outcome::Kind::refused) {

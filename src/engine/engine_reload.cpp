@@ -36,7 +36,7 @@ Reload::End Engine::reload_now(bool again) {
 Reload::End Engine::take(Draft& draft) {
   const bool is_start = stage_->scene == nullptr;
   const Reload::End end = [&] {
-    const Presets::Hands hands(presets_, stage_->store);
+    const Hands hands(stage_->world, presets_, edits_, notes_);
     return reload_.take(draft, *stage_);
   }();
   if (end != Reload::End::applied) return end;
@@ -51,13 +51,14 @@ Reload::End Engine::take(Draft& draft) {
 }
 
 Result<void> Engine::change_scene(const std::string& file) {
-  auto fresh = std::make_unique<Stage>(link_, presets_);
+  auto fresh = std::make_unique<Stage>(link_, presets_, edits_);
   Result<void> ran = fresh->run_beside(file, *this, options_.scene_options);
   if (!ran) return ran;
   Presets::Book book = read_presets(file);
   const bool done = between_ticks([&] {
     options_.scene = file;
     hand_.clear();
+    edits_.clear();
     reload_.begin(*fresh, options_.scene_options, file);
     presets_.scene_says(reload_.script());
     book = presets_.open(std::move(book));

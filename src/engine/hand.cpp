@@ -27,7 +27,11 @@ void PerformerHand::remember(const Message& message) {
   if (known == values_.end()) {
     if (values_.size() >= kMostRemembered) return;
     known = values_.emplace(key_, Value{}).first;
+    if (noted_ != nullptr) noted_->values_.try_emplace(key_);
+  } else if (noted_ != nullptr && known->second.noted != noted_->number_) {
+    noted_->values_.try_emplace(key_, known->second);
   }
+  if (noted_ != nullptr) known->second.noted = noted_->number_;
   known->second.message = message;
   known->second.order = ++order_;
 }
@@ -39,9 +43,24 @@ void PerformerHand::give_back(const std::string& address) {
 }
 
 void PerformerHand::recall(const Blend& blend) {
+  if (noted_ != nullptr && !noted_->recalls_) noted_->recalls_ = recalls_;
   std::erase_if(recalls_, [&](const Recall& r) { return covers(r.blend, blend); });
   if (recalls_.size() >= kMostRecalls) recalls_.erase(recalls_.begin());
   recalls_.push_back({blend, ++order_});
+}
+
+void PerformerHand::exchange(Before& before) {
+  for (auto& [key, value] : before.values_) {
+    std::optional<Value> now;
+    if (const auto known = values_.find(key); known != values_.end()) now = known->second;
+    if (value) {
+      values_[key] = *value;
+    } else {
+      values_.erase(key);
+    }
+    value = std::move(now);
+  }
+  if (before.recalls_) std::swap(recalls_, *before.recalls_);
 }
 
 std::vector<HandStep> PerformerHand::in_order() const {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <unordered_map>
@@ -20,7 +21,32 @@ struct HandStep {
 };
 
 class PerformerHand {
+  struct Value {
+    Message message;
+    std::uint64_t order = 0;
+    std::uint64_t noted = 0;  // the newest Before that it is noted in
+  };
+  struct Recall {
+    Blend blend;
+    std::uint64_t order = 0;
+  };
+
  public:
+  /// What it remembered before some of it was replaced.
+  class Before {
+    friend class PerformerHand;
+    std::uint64_t number_ = 0;
+    std::unordered_map<std::string, std::optional<Value>> values_;
+    std::optional<std::vector<Recall>> recalls_;
+  };
+  /// From here on what is replaced is noted there as well, each once; null: no more.
+  void note_in(Before* before) {
+    noted_ = before;
+    if (before != nullptr && before->number_ == 0) before->number_ = ++befores_;
+  }
+  /// Remembers what is noted there, and notes what it remembered until now.
+  void exchange(Before& before);
+
   /// The message set a property. It replaces an earlier one of the same address and names, and counts as the newest.
   /// Allocates nothing for one that is known.
   void remember(const Message& message);
@@ -34,17 +60,11 @@ class PerformerHand {
   void clear() { *this = {}; }
 
  private:
-  struct Value {
-    Message message;
-    std::uint64_t order = 0;
-  };
   std::unordered_map<std::string, Value> values_;            // by address and names
   std::unordered_map<std::string, std::uint64_t> returned_;  // order of the reload, by address
-  struct Recall {
-    Blend blend;
-    std::uint64_t order = 0;
-  };
   std::vector<Recall> recalls_;
+  Before* noted_ = nullptr;
+  std::uint64_t befores_ = 0;
   std::string key_;  // scratch
   std::uint64_t order_ = 0;
 };

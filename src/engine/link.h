@@ -8,6 +8,7 @@
 
 #include "base/inbox.h"
 #include "base/latest.h"
+#include "engine/change_log.h"
 #include "engine/command.h"
 #include "engine/image.h"
 #include "engine/snapshot.h"
@@ -28,7 +29,8 @@ struct EngineLink {
   std::atomic<std::uint64_t> image_asks{0};
   Latest<OscPlan> osc_plan;  ///< What the scene wishes; null until a scene has run, empty lists: it says nothing.
   Counters counters;
-  Traffic traffic;  ///< What OSC and OSCQuery took and sent, for monitors.
+  Traffic traffic;    ///< What OSC and OSCQuery took and sent, for monitors.
+  ChangeLog changes;  ///< Who set what lately, for monitors.
 
   /// Called after something was put into `outbox`, `osc_plan` or `images` (an eventfd of the network's, say). Set
   /// before start.

@@ -40,11 +40,6 @@ std::string name_of(const Blend& blend) {
 
 }  // namespace
 
-Presets::Hands::Hands(Presets& presets, Store& store) : store_(store) {
-  const auto heard = [](void* who, NodeId id, const Row& row) { static_cast<Presets*>(who)->morphs_.release(id, row); };
-  before_ = store.listen({heard, &presets});
-}
-
 Presets::Book Presets::read(const std::string& scene, std::function<void(const std::string&)> failed) {
   Book book;
   if (scene.empty()) return book;
@@ -261,6 +256,9 @@ Result<std::string> Presets::go(World& world, const Blend& blend, double seconds
   morphs_.release(**binding);
   std::vector<std::string> said{(*binding)->left_out(), lost_choices(store, **binding, blend)};
   if (seconds > 0) {
+    each_value(**binding, blend, [&](const auto& thing, const Row& row, const double* values) {
+      if (!same_bits(values, store.values(thing.id, row), row.width)) store.announce(thing.id, row, true);
+    });
     morphs_.begin(Morph(store, **binding, blend, world.time(), seconds, easing));
   } else {
     const Recalled told = limber::recall(store, **binding, blend);

@@ -69,18 +69,8 @@ class Presets {
   /// Waits until all is on the disk. [any but sim]
   void finish_saving();
 
-  /// While one lives, rows that are set leave the morphs that move them.
-  class Hands {
-   public:
-    Hands(Presets& presets, Store& store);
-    ~Hands() { store_.listen(before_); }
-    Hands(const Hands&) = delete;
-    Hands& operator=(const Hands&) = delete;
-
-   private:
-    Store& store_;
-    Store::Listener before_;
-  };
+  /// A hand sets the row: it leaves the morphs that move it.
+  void release(NodeId id, const Row& row) { morphs_.release(id, row); }
 
  private:
   Outcome store(const Message& message, World& world);

@@ -5,6 +5,7 @@
 #include <string>
 
 #include "engine/dispatch.h"
+#include "engine/edit_node.h"
 #include "engine/link.h"
 #include "engine/preset_node.h"
 #include "engine/publish.h"
@@ -14,11 +15,12 @@
 namespace limber {
 
 struct Stage {
-  Stage(EngineLink& link, Presets& presets)
+  Stage(EngineLink& link, Presets& presets, Edits& edits)
       : world(store),
         transport(world),
         counters(store, link.counters),
         preset_node(world, presets),
+        edit_node(world, edits),
         dispatch(world, &presets),
         publisher(world, link.snapshots) {}
 
@@ -58,6 +60,7 @@ struct Stage {
   Transport transport;
   CounterNode counters;
   PresetNode preset_node;
+  EditNode edit_node;
   Dispatch dispatch;
   Publisher publisher;
   std::unique_ptr<Scene> scene;  // last: it goes first

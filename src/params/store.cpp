@@ -100,7 +100,7 @@ NodeId Store::add(const Table& table, NodeId parent, std::string name, void* thi
   s.kept = take_block(kept_, spare_kept_, table.kept_width());
   s.live = take_block(live_, spare_live_, table.live_width());
   const NodeId id{slot, s.generation};
-  nodes_[slot] = {&table, std::move(name), thing, parent, {}, 0, 0};
+  nodes_[slot] = {&table, std::move(name), thing, parent, {}, 0, 0, structure_version_ + 1};
   nodes_[parent.slot].children.push_back(id);
   child_of_.insert(slot);
   for (const Row& row : table.rows()) {
@@ -154,6 +154,7 @@ NodeId Store::retable(NodeId id, const Table& table, void* thing) {
   slot.live = take_block(live_, spare_live_, table.live_width());
   node.table = &table;
   node.marks = 0;
+  node.born = structure_version_ + 1;
   const NodeId renewed{id.slot, slot.generation};
   std::vector<NodeId>& siblings = nodes_[node.parent.slot].children;
   std::replace(siblings.begin(), siblings.end(), id, renewed);
@@ -280,11 +281,11 @@ Result<SetOutcome> Store::set(NodeId id, const Row& row, std::span<const double>
     row.write(the_thing, taken.data());
     return outcome;
   }
+  announce(id, row, false);
   keep(id, row);
   std::copy_n(taken.data(), row.width, slot_values(id, row));
   if (!row.live) kept_version_++;
   mark(id, row);
-  if (listener_.heard != nullptr) listener_.heard(listener_.who, id, row);
   if (row.written != nullptr) row.written(the_thing, row);
   return outcome;
 }

@@ -145,19 +145,26 @@ class Store {
   /// Removes a hidden node for good.
   void drop_hidden(NodeId id);
 
-  /// Told of each row that is written through the door, of a view the rows behind it, while somebody listens.
+  /// Told of each row that is about to be written through the door, of a view the rows behind it, while somebody
+  /// listens; or, `later`, that is going to be written as time goes on.
   struct Listener {
-    void (*heard)(void* who, NodeId id, const Row& row) = nullptr;
+    void (*heard)(void* who, NodeId id, const Row& row, bool later) = nullptr;
     void* who = nullptr;
   };
   /// From here on this one hears; the answer: who did before.
   Listener listen(Listener listener) { return std::exchange(listener_, listener); }
+  /// Who listens hears of the row.
+  void announce(NodeId id, const Row& row, bool later) {
+    if (listener_.heard != nullptr) listener_.heard(listener_.who, id, row, later);
+  }
 
   std::span<const double> kept() const { return kept_; }
   std::span<const double> live() const { return live_; }
   /// Counts writes to kept values and changes of structure: copies are made anew when it has changed.
   std::uint64_t kept_version() const { return kept_version_; }
   std::uint64_t structure_version() const { return structure_version_; }
+  /// The structure's version when the node came, or got another table.
+  std::uint64_t born(NodeId id) const { return node(id).born; }
   const StoreView* view() const { return &view_; }
   /// Keeps `copy` like view() until hide_view(): for readers that may turn to another store.
   void show_view(StoreView& copy);
@@ -183,6 +190,7 @@ class Store {
     std::vector<NodeId> children;
     std::uint64_t marks = 0;
     std::uint64_t said = 0;
+    std::uint64_t born = 0;
   };
   // children are found by parent and name; the set holds slots, the names stand in the nodes alone
   struct ChildKey {

@@ -28,15 +28,6 @@ std::string_view text_at(lua_State* L, int index) {
   return text == nullptr ? std::string_view("an error without text") : std::string_view(text, length);
 }
 
-std::string sender_text(const Origin& origin) {
-  if (origin.ip != 0) {
-    return fmt::format("{}.{}.{}.{}:{}", origin.ip >> 24 & 255u, origin.ip >> 16 & 255u, origin.ip >> 8 & 255u,
-                       origin.ip & 255u, origin.port);
-  }
-  constexpr std::string_view kHands[] = {"osc", "command_line", "console", "panel", "script"};
-  return std::string(kHands[static_cast<std::size_t>(origin.hand)]);
-}
-
 // function, arguments … -> whether the guarded call ended well
 template <Guard::Kind kind>
 int guarded(lua_State* L) {

@@ -112,7 +112,9 @@ TEST(Monitor, TellsChanges) {
   stage.send({"/scene/wind", "0.5"});
   const Ran ran = monitor.finish();
   EXPECT_EQ(ran.code, 0);
-  EXPECT_NE(ran.out.find(" = /scene/wind "), std::string::npos) << ran.out;
+  EXPECT_NE(ran.out.find(" = 127.0.0.1:"), std::string::npos) << ran.out;
+  EXPECT_NE(ran.out.find(" /scene/wind "), std::string::npos) << ran.out;
+  EXPECT_NE(ran.out.find(" → "), std::string::npos) << ran.out;
 }
 
 TEST(Monitor, SaysWhatIsWrong) {

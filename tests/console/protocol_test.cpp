@@ -53,9 +53,10 @@ TEST(Protocol, Watching) {
   EXPECT_EQ(in.text + "|" + in.end, "/a 1|127.0.0.1:5");
   EXPECT_EQ(in.time, 1.5);
   EXPECT_EQ(read(traffic_line(false, 0, "x", "/a")).kind, Kind::out);
-  const ConsoleLine change = read(change_line(2, "/scene/wind 4"));
+  const ConsoleLine change = read(change_line(2, "console", "/scene/wind 2 → 4"));
   EXPECT_EQ(change.kind, Kind::change);
-  EXPECT_EQ(change.text, "/scene/wind 4");
+  EXPECT_EQ(change.text, "/scene/wind 2 → 4");
+  EXPECT_EQ(change.end, "console");
 }
 
 TEST(Protocol, WhatOneEndWritesTheOtherReads) {

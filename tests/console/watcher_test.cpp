@@ -10,8 +10,9 @@ using engine_test::Show;
 using Wish = ConsoleRequest::Wish;
 
 constexpr const char* kWatchedScene = R"(
-params { { "wind", 2, min = 0, max = 10 } }
+params { { "wind", 2, min = 0, max = 10 }, { "sun", 0 } }
 local ball = sim:add_sphere_shape("ball", 0.1)
+osc:on("/later", function() sim:after(0.02, function() params.sun = 1 end) end)
 sim:add_body("one"):add_part("p", ball, { position = vec3(0, 0, 5) })
 osc:on("/more", function() sim:body("one"):copy("two") end)
 osc:on("/less", function() sim:body("two"):remove() end)
@@ -90,16 +91,53 @@ TEST(Watcher, TellsChangesOfEveryProperty) {
   EXPECT_EQ(after(), Texts{}) << "a ball that falls is no property";
   show.send("/scene/wind", 4.5);
   show.send("/physics/sim/gravity", 0, 0, -1);
-  EXPECT_EQ(after(), (Texts{"/physics/sim/gravity 0 0 -1", "/scene/wind 4.5"}));
+  EXPECT_EQ(after(), (Texts{"/physics/sim/gravity 0 0 -9.81 → 0 0 -1", "/scene/wind 2 → 4.5"}));
   EXPECT_EQ(after(), Texts{});
   // things that come and go are no change of the others'; what changes in the same moment is told
   show.send("/more");
   show.send("/scene/wind", 5);
-  EXPECT_EQ(after(), Texts{"/scene/wind 5"});
+  EXPECT_EQ(after(), Texts{"/scene/wind 4.5 → 5"});
   show.send("/physics/body/two/part/p/mass", 3);
-  EXPECT_EQ(after(), Texts{"/physics/body/two/part/p/mass 3"});
+  EXPECT_EQ(after(), Texts{"/physics/body/two/part/p/mass 1 → 3"});
   show.send("/less");
   EXPECT_EQ(after(), Texts{});
+}
+
+TEST(Watcher, TellsWhichHandItWas) {
+  const engine_test::SceneFile file(kWatchedScene);
+  Show show(file.path());
+  show.send("/scene/wind", 3);
+  show.ticks(1);
+  show.send("/scene/wind", 4);
+  show.ticks(1);
+  show.send("/physics/sim/gravity", 0, 0, -9.81);  // as it is
+  show.ticks(1);
+  Watching changes(show.link, Wish::changes);
+  const std::vector<ConsoleLine> before = changes.told();
+  ASSERT_EQ(before.size(), 1u) << "what hands have set before, a gesture as one";
+  EXPECT_EQ(before[0].text, "/scene/wind 2 → 4");
+  EXPECT_EQ(before[0].end, "127.0.0.1:4000");
+  make_image(show);
+  EXPECT_EQ(changes.texts(), Texts{});
+  show.send("/scene/wind", 5);
+  show.link.inbox.push(
+      {{},
+       {Hand::console},
+       std::make_shared<const Evaluate>(Evaluate{Evaluate::Wish::run, "sim.gravity = vec3(0, 0, -1)"})});
+  make_image(show);
+  std::vector<ConsoleLine> now = changes.told();
+  ASSERT_EQ(now.size(), 2u);
+  EXPECT_EQ(now[0].text, "/physics/sim/gravity 0 0 -9.81 → 0 0 -1");
+  EXPECT_EQ(now[0].end, "console");
+  EXPECT_EQ(now[1].text, "/scene/wind 4 → 5");
+  EXPECT_EQ(now[1].end, "127.0.0.1:4000");
+  show.send("/later");
+  show.ticks(5);  // a timer sets it: no hand
+  make_image(show);
+  now = changes.told();
+  ASSERT_EQ(now.size(), 1u);
+  EXPECT_EQ(now[0].text, "/scene/sun 0 → 1");
+  EXPECT_EQ(now[0].end, "");
 }
 
 TEST(Watcher, TellsAnyKindWhereAPatternSaysSo) {

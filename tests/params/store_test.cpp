@@ -83,20 +83,35 @@ TEST_F(StoreTest, ARotationThatWasReadCanBeSetAgainToTheBit) {
   }
 }
 
-TEST_F(StoreTest, WhoListensHearsEachRowThatIsWritten) {
-  std::vector<std::string> heard;
-  const auto hear = [](void* who, NodeId, const Row& row) {
-    static_cast<std::vector<std::string>*>(who)->push_back(row.name);
+TEST_F(StoreTest, WhoListensHearsOfEachRowBeforeItIsWritten) {
+  struct Ear {
+    const Store& store;
+    std::vector<std::string> heard;
+  } ear{store, {}};
+  const auto hear = [](void* who, NodeId node, const Row& row, bool later) {
+    Ear& of = *static_cast<Ear*>(who);
+    of.heard.push_back(fmt::format("{} {}{}", row.name, of.store.values(node, row)[0], later ? " later" : ""));
   };
-  const Store::Listener before = store.listen({hear, &heard});
+  const Store::Listener before = store.listen({hear, &ear});
   EXPECT_EQ(before.heard, nullptr);
   EXPECT_TRUE(set(store, id, "mass", {2}));
   EXPECT_TRUE(set(store, id, "mass", {2})) << "the same value too";
   EXPECT_FALSE(set(store, id, "mass", {kNan}));
   EXPECT_TRUE(set(store, id, "position", {1, 2, 3}));
-  EXPECT_EQ(store.listen(before).who, &heard);
+  store.announce(id, store.table(id).at("mass"), true);
+  EXPECT_EQ(store.listen(before).who, &ear);
   EXPECT_TRUE(set(store, id, "mass", {3}));
-  EXPECT_EQ(heard, (std::vector<std::string>{"mass", "mass", "position"}));
+  EXPECT_EQ(ear.heard, (std::vector<std::string>{"mass 1", "mass 2", "position 0", "mass 2 later"}));
+}
+
+TEST_F(StoreTest, TellsWhenANodeCame) {
+  const std::uint64_t then = store.structure_version();
+  EXPECT_LE(store.born(id), then);
+  const NodeId newer = store.add(store.table(id), store.root(), "newer", nullptr);
+  EXPECT_GT(store.born(newer), then);
+  EXPECT_LE(store.born(newer), store.structure_version());
+  store.remove(newer);
+  EXPECT_EQ(store.born(newer), 0u);
 }
 
 TEST_F(StoreTest, RefusesWhatIsNoValueAndAppliesNothingOfIt) {
