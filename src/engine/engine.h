@@ -100,7 +100,7 @@ class Engine : private ScriptHost {
   void plan_osc(const OscPlan& plan) override;
   void ask_reset() override;
   Result<void> check_preset(const Message& wish, std::span<const Message> before) override;
-  void ask_preset(Message wish) override;
+  void ask_preset(Message&& wish) override;
   std::vector<std::string> preset_names() override;
   void script_error(std::string_view file, int line, std::string_view text) override;
   void print(std::string_view text) override;

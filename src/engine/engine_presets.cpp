@@ -63,7 +63,7 @@ Result<void> Engine::check_preset(const Message& wish, std::span<const Message> 
   return presets_.check(wish, all);
 }
 
-void Engine::ask_preset(Message wish) { wishes_.push_back(std::move(wish)); }
+void Engine::ask_preset(Message&& wish) { wishes_.push_back(std::move(wish)); }
 
 std::vector<std::string> Engine::preset_names() {
   std::vector<std::string> names;

@@ -34,7 +34,7 @@ class ScriptHost {
     return Error{"there are no presets here"};
   }
   /// One that would is done once the tick's callbacks are.
-  virtual void ask_preset(Message wish) { (void)wish; }
+  virtual void ask_preset(Message&& wish) { (void)wish; }
   /// Their names, in order.
   virtual std::vector<std::string> preset_names() { return {}; }
   /// A script's fault, with file and line: log, panel, /script/error. Empty text: the file is mended.

@@ -49,6 +49,7 @@ struct Player {
     std::vector<Outgoing> out;
     link.outbox.drain(out);
     std::vector<Message> messages;
+    messages.reserve(out.size());
     for (Outgoing& each : out) messages.push_back(std::move(each.message));
     return messages;
   }

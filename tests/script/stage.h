@@ -80,7 +80,7 @@ class Stage {
   }
   /// Runs, settles, starts; then so many ticks as the engine makes them.
   std::string play(const std::string& text, int ticks = 0) {
-    const std::string fault = run(text);
+    std::string fault = run(text);
     if (!fault.empty()) return fault;
     world.settle();
     scene.start();
