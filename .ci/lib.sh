@@ -26,6 +26,7 @@ sign_present() {
   case $1 in
     program) command -v "$2" >/dev/null ;;
     module) command -v pkg-config >/dev/null && pkg-config --exists "$2" ;;
+    file) [ -e "$2" ] ;;
     header) [ -e "/usr/include/$2" ] || [ -e "/usr/local/include/$2" ] ;;
   esac
 }

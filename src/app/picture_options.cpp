@@ -33,6 +33,10 @@ void add_picture_options(CLI::App& play, PictureOptions& o) {
   play.add_option("--fps", o.fps, "frames in a second of --render; default 60")
       ->type_name("N")
       ->check(CLI::Range(0.001, 1000.0));
+  play.add_flag("--panel", o.panel, "with --screenshot: the panel over the picture, too");
+  play.add_option("--panel-scale", o.panel_scale, "of the panel, beside what the screen asks for; default 1")
+      ->type_name("N")
+      ->check(CLI::Range(0.5, 4.0));
 }
 
 Result<PictureSize> picture_size(const PictureOptions& options) {
@@ -60,6 +64,7 @@ Result<void> check_picture(const PictureOptions& o, const std::optional<double>&
   if (!size) return Error{size.error()};
   if (!o.screenshot.empty() && !o.render.empty()) return Error{"--screenshot and --render don't go together"};
   if (o.screenshot.empty() && o.at) return Error{"--at says when --screenshot is taken; give that too"};
+  if (o.screenshot.empty() && o.panel) return Error{"--panel is of --screenshot; give that too"};
   if (o.render.empty() && o.fps) return Error{"--fps is that of --render; give that too"};
   if (!o.screenshot.empty() && !o.screenshot.ends_with(".png"))
     return Error{fmt::format("--screenshot '{}': a still is a .png file", printable(o.screenshot))};

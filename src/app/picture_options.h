@@ -22,6 +22,8 @@ struct PictureOptions {
   std::optional<double> at;
   std::string render;  ///< File of a film, or a pattern of stills; empty: none.
   std::optional<double> fps;
+  bool panel = false;                 ///< Over a still, too.
+  std::optional<double> panel_scale;  ///< Beside the screen's own.
 
   bool offline() const { return !screenshot.empty() || !render.empty(); }
 };

@@ -8,6 +8,7 @@
 
 #include "app/exit_code.h"
 #include "app/film_file.h"
+#include "app/panel_setup.h"
 #include "app/paths.h"
 #include "base/clock_seconds.h"
 #include "base/text.h"
@@ -35,6 +36,7 @@ class Moments {
     while (elapsed_ < seconds - 1e-9) {
       if (cancel_()) return Went::cancelled;
       before_ = now_;
+      before_tick_();
       engine_.tick();
       link_.outbox.drain(gone_);
       now_ = link_.snapshots.read();
@@ -47,6 +49,8 @@ class Moments {
     }
     return Went::there;
   }
+  /// Called before each tick.
+  void on_tick(std::function<void()> f) { before_tick_ = std::move(f); }
   const Snapshot& before() const { return *before_; }
   const Snapshot& now() const { return *now_; }
   double mix(double seconds) const {
@@ -58,6 +62,7 @@ class Moments {
   Engine& engine_;
   EngineLink& link_;
   const std::function<bool()>& cancel_;
+  std::function<void()> before_tick_ = [] {};
   std::shared_ptr<const Snapshot> before_, now_;
   double elapsed_ = 0;
   double elapsed_before_ = 0;
@@ -90,14 +95,51 @@ class Progress {
 
 Rendered failed(int code, const std::string& text) { return {fail(code, text), false}; }
 
-Rendered draw_still(const PictureOptions& options, const PictureSize& size, Renderer& renderer, Moments& moments) {
+// the panel over a still: it has seen the ticks before, so that its graphs are full
+class StillPanel {
+ public:
+  StillPanel(const PictureOptions& options, const PictureSize& size, Engine& engine, EngineLink& link)
+      : engine_(engine), link_(link), gui_(link, panel_options(nullptr)) {
+    frame_ = {static_cast<double>(size.width), static_cast<double>(size.height), options.panel_scale.value_or(1), 0};
+  }
+  void frame() {
+    frame_.clock += 1.0 / 60;
+    gui_.frame(frame_);
+  }
+  void draw_over(const Renderer& renderer) {
+    const std::uint64_t ask = link_.ask_image();
+    const auto late = [&] {
+      const std::shared_ptr<const Image> image = link_.images.read();
+      return image == nullptr || image->asks < ask;
+    };
+    while (late()) engine_.idle();
+    for (int i = 0; i < kSettle; i++) frame();
+    renderer.draw_over([&] { gui_.paint(); });
+  }
+
+ private:
+  static constexpr int kSettle = 3;  // frames until all has its place
+  Engine& engine_;
+  EngineLink& link_;
+  Gui gui_;
+  GuiFrame frame_;
+};
+
+Rendered draw_still(const PictureOptions& options, const PictureSize& size, Renderer& renderer, Moments& moments,
+                    Engine& engine, EngineLink& link) {
   const double at = options.at.value_or(0);
+  std::optional<StillPanel> panel;
+  if (options.panel) {
+    panel.emplace(options, size, engine, link);
+    moments.on_tick([&] { panel->frame(); });
+  }
   const Moments::Went went = moments.go_to(at);
   if (went == Moments::Went::cancelled) return {kFine, true};
   if (went == Moments::Went::stuck) return failed(kInput, "time stands still: the scene is paused before --at");
   if (const auto drawn = renderer.draw(moments.before(), moments.now(), moments.mix(at), size.width, size.height);
       !drawn)
     return failed(kMachine, drawn.error());
+  if (panel) panel->draw_over(renderer);
   if (const auto written = write_png(renderer.read(), options.screenshot); !written)
     return failed(kInput, written.error());
   fmt::print(stderr, "limber: {}: {} × {}, at {} s\n", printable(options.screenshot), size.width, size.height,
@@ -154,7 +196,7 @@ Rendered render(const PictureOptions& options, Engine& engine, EngineLink& link,
   if (gl_is_software() && quality != Quality::low && !options.render.empty())
     fmt::print(stderr, "limber: that is software, and takes its time; --quality low is several times faster\n");
   Moments moments(engine, link, cancel);
-  if (options.render.empty()) return draw_still(options, *size, **renderer, moments);
+  if (options.render.empty()) return draw_still(options, *size, **renderer, moments, engine, link);
   return draw_film(options, *size, **renderer, moments, duration.value_or(0), cancel);
 }
 

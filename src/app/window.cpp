@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cstdint>
 #include <cstdlib>
+#include <iterator>
 #include <utility>
 
 #include <GLFW/glfw3.h>
@@ -40,6 +41,52 @@ std::string glfw_fault() {
   const char* text = nullptr;
   glfwGetError(&text);
   return text == nullptr ? "GLFW does not say why" : text;
+}
+
+struct KeyName {
+  int glfw;
+  GuiKey key;
+};
+constexpr KeyName kKeys[] = {{GLFW_KEY_TAB, GuiKey::tab},
+                             {GLFW_KEY_LEFT, GuiKey::left},
+                             {GLFW_KEY_RIGHT, GuiKey::right},
+                             {GLFW_KEY_UP, GuiKey::up},
+                             {GLFW_KEY_DOWN, GuiKey::down},
+                             {GLFW_KEY_PAGE_UP, GuiKey::page_up},
+                             {GLFW_KEY_PAGE_DOWN, GuiKey::page_down},
+                             {GLFW_KEY_HOME, GuiKey::home},
+                             {GLFW_KEY_END, GuiKey::end},
+                             {GLFW_KEY_INSERT, GuiKey::insert},
+                             {GLFW_KEY_DELETE, GuiKey::erase},
+                             {GLFW_KEY_BACKSPACE, GuiKey::backspace},
+                             {GLFW_KEY_SPACE, GuiKey::space},
+                             {GLFW_KEY_ENTER, GuiKey::enter},
+                             {GLFW_KEY_KP_ENTER, GuiKey::enter},
+                             {GLFW_KEY_ESCAPE, GuiKey::escape},
+                             {GLFW_KEY_PERIOD, GuiKey::period},
+                             {GLFW_KEY_COMMA, GuiKey::comma},
+                             {GLFW_KEY_MINUS, GuiKey::minus},
+                             {GLFW_KEY_KP_SUBTRACT, GuiKey::minus},
+                             {GLFW_KEY_EQUAL, GuiKey::equal},
+                             {GLFW_KEY_KP_ADD, GuiKey::equal},
+                             {GLFW_KEY_SLASH, GuiKey::slash}};
+
+// GLFW's own order within these runs is ours
+GuiKey gui_key(int key) {
+  const auto run = [&](int first, int last, GuiKey begin) {
+    return key >= first && key <= last ? static_cast<GuiKey>(static_cast<int>(begin) + key - first) : GuiKey::none;
+  };
+  for (const GuiKey found : {run(GLFW_KEY_A, GLFW_KEY_Z, GuiKey::a), run(GLFW_KEY_0, GLFW_KEY_9, GuiKey::digit_0),
+                             run(GLFW_KEY_F1, GLFW_KEY_F12, GuiKey::f1)}) {
+    if (found != GuiKey::none) return found;
+  }
+  const auto* const named =
+      std::find_if(std::begin(kKeys), std::end(kKeys), [&](const KeyName& k) { return k.glfw == key; });
+  return named == std::end(kKeys) ? GuiKey::none : named->key;
+}
+
+KeyMods key_mods(int mods) {
+  return {(mods & GLFW_MOD_CONTROL) != 0, (mods & GLFW_MOD_SHIFT) != 0, (mods & GLFW_MOD_ALT) != 0};
 }
 
 Window& of(GLFWwindow* window) { return *static_cast<Window*>(glfwGetWindowUserPointer(window)); }
@@ -102,8 +149,11 @@ Window::Window(GLFWwindow* window) : window_(window) {
   glfwSwapInterval(1);
   glfwSetWindowUserPointer(window_, this);
   glfwSetKeyCallback(window_, on_key);
+  glfwSetCharCallback(window_, on_letter);
+  glfwSetMouseButtonCallback(window_, on_button);
   glfwSetCursorPosCallback(window_, on_move);
   glfwSetScrollCallback(window_, on_scroll);
+  glfwSetWindowFocusCallback(window_, on_focus);
   glfwGetCursorPos(window_, &x_, &y_);
 }
 
@@ -112,19 +162,52 @@ Window::~Window() { glfwDestroyWindow(window_); }
 
 void Window::on_display_lost(std::function<void()> go_on) { display_lost = std::move(go_on); }
 
+// a modifier's own press and release count, too: letters that come after it are letters again
 void Window::on_key(GLFWwindow* window, int key, int, int action, int) {
-  if (action != GLFW_PRESS) return;
-  std::vector<Key>& keys = of(window).keys_;
-  if (key == GLFW_KEY_SPACE) keys.push_back(Key::space);
-  if (key == GLFW_KEY_PERIOD) keys.push_back(Key::period);
-  if (key == GLFW_KEY_HOME) keys.push_back(Key::home);
-  if (key == GLFW_KEY_F11) keys.push_back(Key::full_screen);
+  if (action == GLFW_REPEAT) return;  // the panel repeats by itself
+  InputEvent event{.kind = InputEvent::Kind::key};
+  event.key = gui_key(key);
+  event.down = action == GLFW_PRESS;
+  const auto held = [&](int left, int right) {
+    return glfwGetKey(window, left) == GLFW_PRESS || glfwGetKey(window, right) == GLFW_PRESS;
+  };
+  event.mods = {held(GLFW_KEY_LEFT_CONTROL, GLFW_KEY_RIGHT_CONTROL), held(GLFW_KEY_LEFT_SHIFT, GLFW_KEY_RIGHT_SHIFT),
+                held(GLFW_KEY_LEFT_ALT, GLFW_KEY_RIGHT_ALT)};
+  of(window).events_.push_back(event);
+}
+
+void Window::on_letter(GLFWwindow* window, unsigned letter) {
+  InputEvent event{.kind = InputEvent::Kind::text};
+  event.letter = letter;
+  of(window).events_.push_back(event);
+}
+
+void Window::on_button(GLFWwindow* window, int button, int action, int mods) {
+  InputEvent event{.kind = InputEvent::Kind::button};
+  event.button = button;
+  event.down = action == GLFW_PRESS;
+  event.mods = key_mods(mods);
+  of(window).events_.push_back(event);
+}
+
+void Window::on_focus(GLFWwindow* window, int focused) {
+  InputEvent event{.kind = InputEvent::Kind::focus};
+  event.down = focused == GLFW_TRUE;
+  of(window).events_.push_back(event);
 }
 
 void Window::on_move(GLFWwindow* window, double x, double y) {
   Window& self = of(window);
   const double dx = x - std::exchange(self.x_, x);
   const double dy = y - std::exchange(self.y_, y);
+  InputEvent event{.kind = InputEvent::Kind::move};
+  // of the picture, which on some screens has more pixels than the window has units
+  int width = 0;
+  int height = 0;
+  glfwGetWindowSize(window, &width, &height);
+  event.x = width > 0 ? x * self.width() / width : x;
+  event.y = height > 0 ? y * self.height() / height : y;
+  self.events_.push_back(event);
   const auto held = [&](int button) { return glfwGetMouseButton(window, button) == GLFW_PRESS; };
   const auto pressed = [&](int key) { return glfwGetKey(window, key) == GLFW_PRESS; };
   const bool shift = pressed(GLFW_KEY_LEFT_SHIFT) || pressed(GLFW_KEY_RIGHT_SHIFT);
@@ -137,7 +220,13 @@ void Window::on_move(GLFWwindow* window, double x, double y) {
   }
 }
 
-void Window::on_scroll(GLFWwindow* window, double, double y) { of(window).mouse_.wheel += y; }
+void Window::on_scroll(GLFWwindow* window, double x, double y) {
+  of(window).mouse_.wheel += y;
+  InputEvent event{.kind = InputEvent::Kind::wheel};
+  event.x = x;
+  event.y = y;
+  of(window).events_.push_back(event);
+}
 
 void Window::poll(double seconds) {
   if (seconds > 0) {
@@ -169,12 +258,27 @@ double Window::refresh_rate() const {
   return mode == nullptr || mode->refreshRate <= 0 ? 60 : mode->refreshRate;
 }
 
-std::vector<Key> Window::take_keys() { return std::exchange(keys_, {}); }
+double Window::content_scale() const {
+  float x = 1;
+  glfwGetWindowContentScale(window_, &x, nullptr);
+  return x > 0 ? static_cast<double>(x) : 1;
+}
+
+std::string Window::clipboard() const {
+  const char* const text = glfwGetClipboardString(window_);
+  return text == nullptr ? "" : text;
+}
+
+void Window::clipboard(const std::string& text) { glfwSetClipboardString(window_, text.c_str()); }
+
+std::vector<InputEvent> Window::take_events() { return std::exchange(events_, {}); }
 MouseMoves Window::take_mouse() { return std::exchange(mouse_, {}); }
 void Window::title(const std::string& text) { glfwSetWindowTitle(window_, text.c_str()); }
 
+bool Window::is_full_screen() const { return glfwGetWindowMonitor(window_) != nullptr; }
+
 void Window::toggle_full_screen() {
-  if (glfwGetWindowMonitor(window_) != nullptr) {
+  if (is_full_screen()) {
     glfwSetWindowMonitor(window_, nullptr, place_[0], place_[1], place_[2], place_[3], GLFW_DONT_CARE);
     return;
   }

@@ -1,4 +1,4 @@
-// Window: one window with OpenGL and what hands do in it, through GLFW. Presses shorter than a frame are not lost.
+// Window: one window with OpenGL and what hands do in it, through GLFW, in its order.
 #pragma once
 
 #include <functional>
@@ -7,12 +7,11 @@
 #include <vector>
 
 #include "base/result.h"
+#include "gui/input.h"
 
 struct GLFWwindow;
 
 namespace limber {
-
-enum class Key : std::uint8_t { space, period, home, full_screen };
 
 /// What a mouse has done since the last look: pixels of the window, steps of the wheel.
 struct MouseMoves {
@@ -45,11 +44,17 @@ class Window {
   int height() const;
   /// Of the screen that it is on, 1/s. [main]
   double refresh_rate() const;
-  std::vector<Key> take_keys();
+  /// Of the screen that it is on: 2 where there are twice the pixels. [main]
+  double content_scale() const;
+  /// What hands have done since the last call, for the panel. [main]
+  std::vector<InputEvent> take_events();
   MouseMoves take_mouse();
+  std::string clipboard() const;
+  void clipboard(const std::string& text);
   void title(const std::string& text);
   /// To the whole screen that it is on, and back. [main]
   void toggle_full_screen();
+  bool is_full_screen() const;
   void swap();
 
  private:
@@ -57,9 +62,12 @@ class Window {
   static void on_key(GLFWwindow* window, int key, int code, int action, int mods);
   static void on_move(GLFWwindow* window, double x, double y);
   static void on_scroll(GLFWwindow* window, double x, double y);
+  static void on_button(GLFWwindow* window, int button, int action, int mods);
+  static void on_letter(GLFWwindow* window, unsigned letter);
+  static void on_focus(GLFWwindow* window, int focused);
 
   GLFWwindow* window_;
-  std::vector<Key> keys_;
+  std::vector<InputEvent> events_;
   MouseMoves mouse_;
   double x_ = 0;
   double y_ = 0;

@@ -9,6 +9,7 @@
 
 #include <fmt/format.h>
 
+#include "app/panel_setup.h"
 #include "app/paths.h"
 #include "base/clock_seconds.h"
 #include "base/log.h"
@@ -37,8 +38,11 @@ Result<std::unique_ptr<WindowShow>> WindowShow::open(const PictureOptions& optio
                                                      EngineLink& link) {
   // software drawing takes every core that it finds: it begins its threads from here
   setpriority(PRIO_PROCESS, 0, 5);
-  const Result<PictureSize> size = picture_size(options);
+  Result<PictureSize> size = picture_size(options);
   if (!size) return Error{size.error()};
+  const PanelSettings settings = load_settings(settings_file());
+  if (options.size.empty() && settings.window_width > 0 && settings.window_height > 0)
+    *size = {settings.window_width, settings.window_height};
   Result<std::unique_ptr<Window>> window = Window::open(fmt::format("Limber: {}", scene), size->width, size->height);
   if (!window) return Error{window.error()};
   const bool software = gl_is_software();
@@ -48,7 +52,33 @@ Result<std::unique_ptr<WindowShow>> WindowShow::open(const PictureOptions& optio
   fmt::print(stderr, "limber: window {} × {}, drawn by {}\n", size->width, size->height, gl_driver());
   if (software && options.quality.empty())
     fmt::print(stderr, "limber: that is software, so the picture is of quality low; --quality high looks better\n");
-  return std::unique_ptr<WindowShow>(new WindowShow(std::move(*window), std::move(*renderer), scene, link));
+  return std::unique_ptr<WindowShow>(
+      new WindowShow(std::move(*window), std::move(*renderer), options, settings, scene, link));
+}
+
+WindowShow::WindowShow(std::unique_ptr<Window> window, std::unique_ptr<Renderer> renderer,
+                       const PictureOptions& options, const PanelSettings& settings, std::string scene,
+                       EngineLink& link)
+    : window_(std::move(window)),
+      renderer_(std::move(renderer)),
+      settings_file_(settings_file()),
+      kept_(settings),
+      panel_scale_(options.panel_scale.value_or(1)),
+      own_size_(!options.size.empty()),
+      scene_(std::move(scene)),
+      link_(link) {
+  GuiOptions panel = panel_options(window_.get());
+  panel.settings = settings;
+  gui_ = std::make_unique<Gui>(link_, std::move(panel));
+}
+
+WindowShow::~WindowShow() {
+  PanelSettings now = gui_->settings();
+  if (!own_size_ && window_->width() > 0 && !window_->is_full_screen()) {
+    now.window_width = window_->width();
+    now.window_height = window_->height();
+  }
+  if (now != kept_) save_settings(settings_file_, now);
 }
 
 void WindowShow::send(std::vector<Message> messages) {
@@ -78,18 +108,20 @@ void WindowShow::look_from(const Orbit& orbit) {
         {"/visuals/camera/eye", numbers(orbit.eye)}});
 }
 
-void WindowShow::hear_keys() {
-  for (const Key key : window_->take_keys()) {
-    if (key == Key::full_screen) window_->toggle_full_screen();
-    if (key == Key::space) send({{now_->paused ? "/transport/play" : "/transport/pause", {}}});
-    if (key == Key::period) send({{"/transport/step", {}}});
-    if (key == Key::home) look_from(home_);
+// the panel first: what is not its own is the picture's
+void WindowShow::hear_hands(int width, int height, double now) {
+  for (const InputEvent& event : window_->take_events()) gui_->push(event);
+  gui_->frame({static_cast<double>(width), static_cast<double>(height), window_->content_scale() * panel_scale_, now});
+  for (const HotkeyAction action : gui_->take_actions()) {
+    if (action == HotkeyAction::full_screen) window_->toggle_full_screen();
+    if (action == HotkeyAction::home_view) look_from(home_);
   }
+  hear_mouse();
 }
 
 void WindowShow::hear_mouse() {
   const MouseMoves mouse = window_->take_mouse();
-  if (!mouse.any()) return;
+  if (!mouse.any() || gui_->wants_mouse()) return;
   const CameraView camera = camera_of(*now_);
   const double now = clock_seconds();
   if (now - moved_ > kHandStays) orbit_ = orbit_of(camera);
@@ -126,8 +158,6 @@ WindowShow::End WindowShow::frame() {
   drawn_ = now;
   look_at_snapshots(now);
   if (now_ == nullptr) return End::none;
-  hear_keys();
-  hear_mouse();
   if (now - shaders_looked_ > kShadersEvery) {
     shaders_looked_ = now;
     renderer_->renew_shaders();
@@ -138,12 +168,14 @@ WindowShow::End WindowShow::frame() {
     window_->poll(0.05);
     return End::none;
   }
+  hear_hands(width, height, now);
   const double mix = interval_ <= 0 ? 1 : std::clamp((now - came_) / interval_, 0.0, 1.0);
   if (const Result<void> drawn = renderer_->draw(*before_, *now_, mix, width, height); !drawn) {
     log_error("{}; playing on headless", drawn.error());
     return End::lost;
   }
   renderer_->show(width, height);
+  gui_->paint();
   window_->swap();
   tell_rate(now);
   return End::none;

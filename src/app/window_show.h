@@ -7,6 +7,7 @@
 #include "app/picture_options.h"
 #include "app/window.h"
 #include "engine/link.h"
+#include "gui/gui.h"
 #include "view/lens.h"
 #include "view/renderer.h"
 
@@ -19,24 +20,34 @@ class WindowShow {
   static Result<std::unique_ptr<WindowShow>> open(const PictureOptions& options, const std::string& scene,
                                                   EngineLink& link);
 
+  /// Keeps what the panel remembers.
+  ~WindowShow();
+  WindowShow(const WindowShow&) = delete;
+  WindowShow& operator=(const WindowShow&) = delete;
+
   enum class End : std::uint8_t { none, closed, lost };
   /// What hands did, one picture, and the wait for its time. `lost`: nothing can be drawn any more, which was said.
   /// [main]
   End frame();
 
  private:
-  WindowShow(std::unique_ptr<Window> window, std::unique_ptr<Renderer> renderer, std::string scene, EngineLink& link)
-      : window_(std::move(window)), renderer_(std::move(renderer)), scene_(std::move(scene)), link_(link) {}
+  WindowShow(std::unique_ptr<Window> window, std::unique_ptr<Renderer> renderer, const PictureOptions& options,
+             const PanelSettings& settings, std::string scene, EngineLink& link);
 
   void look_at_snapshots(double now);
   void look_from(const Orbit& orbit);
-  void hear_keys();
+  void hear_hands(int width, int height, double now);
   void hear_mouse();
   void send(std::vector<Message> messages);
   void tell_rate(double now);
 
   std::unique_ptr<Window> window_;
   std::unique_ptr<Renderer> renderer_;  // before its context goes
+  std::string settings_file_;
+  PanelSettings kept_;        // as they are in the file
+  double panel_scale_ = 1;    // of the panel, beside the screen's own
+  bool own_size_ = false;     // the command line says how large the window is
+  std::unique_ptr<Gui> gui_;  // before its context goes, too
   std::string scene_;
   EngineLink& link_;
   std::shared_ptr<const Snapshot> before_, now_;

@@ -36,6 +36,9 @@ std::uint64_t log_newest();
 /// How many warnings and errors were said so far: `--strict` and tests ask. [any]
 std::uint64_t log_count(LogLevel level);
 
+/// Behind a file's name: its faults that were said before are no more.
+inline constexpr std::string_view kMended = ": mended";
+
 /// Silences stderr (the ring still hears): for tests and `--quiet`. [any]
 void log_to_stderr(bool on);
 

@@ -236,7 +236,7 @@ void Engine::publish() {
   stage_->counters.tell();
   stage_->preset_node.tell();
   stage_->transport.tell(clock_.speed_reached());
-  stage_->publisher.publish(stage_->transport.paused(), clock_.speed_reached());
+  stage_->publisher.publish(stage_->transport.paused(), clock_.speed_reached(), times_);
 }
 
 void Engine::make_image(std::uint64_t asks) {
@@ -408,6 +408,7 @@ void Engine::ask_reset() { stage_->world.ask_reset(); }
 void Engine::script_error(std::string_view file, int line, std::string_view text) {
   if (text.empty()) {
     push_out({Outgoing::To::event, {}, {"/script/ok", {Arg::of(file)}}});
+    log_info("{}{}", file, kMended);
     return;
   }
   faults_++;

@@ -35,19 +35,6 @@ struct EngineOptions {
   std::vector<Message> sets;           ///< `--set`: the performer's hand before the first tick, after the preset.
 };
 
-/// Seconds of the last tick, by phase (architecture.md, the tick).
-struct PhaseTimes {
-  double commands = 0;
-  double scripts = 0;
-  double behaviors = 0;
-  double effects = 0;
-  double physics = 0;
-  double readouts = 0;
-  double snapshot = 0;
-  double collector = 0;
-  double total() const { return commands + scripts + behaviors + effects + physics + readouts + snapshot; }
-};
-
 class Engine : private ScriptHost {
  public:
   /// Work that messages may make in one tick: 1 each and 1 a value, more where a text is made or the scene listens. The
@@ -67,6 +54,8 @@ class Engine : private ScriptHost {
   void run();
   /// One tick now, whatever the clock says; while paused only commands and handlers. [sim]
   void tick() { pass(true); }
+  /// What happens while time stands still: commands, handlers, what was asked for; no time passes. [sim]
+  void idle() { pass(false); }
   /// Ends run() soon. [any]
   void stop();
 

@@ -29,7 +29,7 @@ void Publisher::renew_roster() {
   roster_ = std::move(roster);
 }
 
-void Publisher::publish(bool paused, double speed_reached) {
+void Publisher::publish(bool paused, double speed_reached, const PhaseTimes& times) {
   if (roster_ == nullptr || structure_ != world_.store().structure_version()) {
     renew_roster();
     drawing_ = std::make_shared<const Drawing>(world_);
@@ -40,6 +40,7 @@ void Publisher::publish(bool paused, double speed_reached) {
   snapshot->time = world_.time();
   snapshot->paused = paused;
   snapshot->speed = speed_reached;
+  snapshot->times = times;
   snapshot->roster = roster_;
   const std::span<const double> live = world_.store().live();
   snapshot->live.assign(live.begin(), live.end());

@@ -13,7 +13,7 @@ class Publisher {
  public:
   Publisher(World& world, Latest<Snapshot>& out) : world_(world), out_(out) {}
 
-  void publish(bool paused, double speed_reached);
+  void publish(bool paused, double speed_reached, const PhaseTimes& times = {});
 
  private:
   void renew_roster();

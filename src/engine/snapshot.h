@@ -35,11 +35,25 @@ struct LiveOffsets {
 };
 const LiveOffsets& live_offsets();
 
+/// Seconds of a tick, by phase (architecture.md, the tick).
+struct PhaseTimes {
+  double commands = 0;
+  double scripts = 0;
+  double behaviors = 0;
+  double effects = 0;
+  double physics = 0;
+  double readouts = 0;
+  double snapshot = 0;
+  double collector = 0;
+  double total() const { return commands + scripts + behaviors + effects + physics + readouts + snapshot; }
+};
+
 struct Snapshot {
   std::uint64_t tick = 0;
   double time = 0;   ///< Simulated seconds.
   double speed = 1;  ///< Simulated seconds per real second, reached.
   bool paused = false;
+  PhaseTimes times;  ///< What this tick took; of `snapshot` and `collector`, what the one before did.
   std::shared_ptr<const Roster> roster;
   std::vector<double> live;  ///< States and readouts of every node, as the store has them.
   std::shared_ptr<const Drawing> drawing;

@@ -335,6 +335,14 @@ Pixels Renderer::read() const {
   return pixels;
 }
 
+void Renderer::draw_over(const std::function<void()>& draw) const {
+  glDisable(GL_FRAMEBUFFER_SRGB);
+  glBindFramebuffer(GL_FRAMEBUFFER, *resolved_);
+  glViewport(0, 0, width_, height_);
+  draw();
+  glBindFramebuffer(GL_FRAMEBUFFER, 0);
+}
+
 void Renderer::show(int width, int height) const {
   glDisable(GL_FRAMEBUFFER_SRGB);  // the bytes as they are
   glBindFramebuffer(GL_READ_FRAMEBUFFER, *resolved_);

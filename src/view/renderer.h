@@ -1,6 +1,7 @@
 // Renderer: draws a snapshot into a picture of its own, in whichever context is current: a window's or none's.
 #pragma once
 
+#include <functional>
 #include <map>
 #include <memory>
 #include <string>
@@ -25,6 +26,8 @@ class Renderer {
   /// Draws between two snapshots (`mix` 0: before, 1: now). A picture is at least 1 × 1; an error: too large. [main]
   Result<void> draw(const Snapshot& before, const Snapshot& now, double mix, int width, int height);
   Result<void> draw(const Snapshot& now, int width, int height) { return draw(now, now, 1, width, height); }
+  /// Calls what draws over the picture drawn last, which is bound, its colours as they are. [main]
+  void draw_over(const std::function<void()>& draw) const;
   /// The picture drawn last. [main]
   Pixels read() const;
   /// Copies it into the window's own framebuffer, stretched to that size. [main]

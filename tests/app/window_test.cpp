@@ -15,18 +15,31 @@ sim:on_step(function() if sim.tick % 60 == 0 then print("tick") end end)
 // an X server without a screen; it chooses its number itself
 class Display {
  public:
-  Display() : server_({"Xvfb", "-displayfd", "1", "-screen", "0", "320x240x24", "-nolisten", "tcp"}) {
+  explicit Display(const std::string& screen = "320x240x24")
+      : server_({"Xvfb", "-displayfd", "1", "-screen", "0", screen, "-nolisten", "tcp"}) {
     EXPECT_TRUE(server_.wait_for("\n", true)) << "apt-get install xvfb\n" << server_.err();
     name_ = ":" + server_.out().substr(0, server_.out().find('\n'));
   }
   void end() { server_.signal(SIGKILL); }
   std::vector<std::string> environment() const {
     std::vector<std::string> all = without_leak_search();
-    all.insert(all.end(), {"DISPLAY=" + name_, "LIBGL_ALWAYS_SOFTWARE=1"});
+    all.insert(all.end(),
+               {"DISPLAY=" + name_, "LIBGL_ALWAYS_SOFTWARE=1", "XDG_CONFIG_HOME=" + (folder_.path() + "/config"),
+                "XDG_STATE_HOME=" + (folder_.path() + "/state")});
     return all;
   }
+  /// Hands of somebody at this display. Keys go to the window under the pointer.
+  void xdotool(std::vector<std::string> words) const {
+    words.insert(words.begin(), "xdotool");
+    std::vector<std::string> all = environment();
+    all.insert(all.end(), words.begin(), words.end());
+    const Ran ran = Running(all).finish();
+    EXPECT_EQ(ran.code, 0) << "apt-get install xdotool\n" << ran.err;
+  }
+  std::string settings() const { return content(folder_.path() + "/config/limber/panel.json"); }
 
  private:
+  Folder folder_;
   Running server_;
   std::string name_;
 };
@@ -54,6 +67,41 @@ TEST(Window, OpensWhereThereIsADisplayAndEndsCleanly) {
       Running(limber(quiet(scene, {"--ticks", "5", "--hash"}), display.environment())).finish().out.find("tick 5\n"),
       std::string::npos)
       << "and by itself";
+}
+
+// what the panel's hands do arrives in the scene, which says so
+TEST(Window, ThePanelIsPlayedByMouseAndKeys) {
+  const Display display("1280x720x24");
+  const Folder folder;
+  const std::string scene = folder.file("s.lua", R"(
+params { { "rate", 0, min = 0, max = 1 } }
+local rate = 0
+sim:on_step(function()
+  if params.rate ~= rate then rate = params.rate; print(string.format("rate %.1f", rate)) end
+  if sim.tick == 30 then print("begun") end
+  if sim.paused then print("one step") end
+end)
+)");
+  std::vector<std::string> args = {scene,     "--osc-in", "off",    "--osc-out", "off",
+                                   "--query", "off",      "--size", "1280x720"};
+  Running running(limber(args, display.environment()));
+  ASSERT_TRUE(running.wait_for("limber: window 1280 × 720")) << running.err();
+  ASSERT_TRUE(running.wait_for("begun", true));
+  // the first bar of the parameters, from its middle to its end
+  display.xdotool({"mousemove", "1100", "117", "mousedown", "1", "mousemove", "1260", "117", "mouseup", "1"});
+  ASSERT_TRUE(running.wait_for("rate 1.0", true)) << running.out();
+  // a key that is pressed and released between two pictures
+  display.xdotool({"mousemove", "600", "300", "key", "F1"});
+  display.xdotool({"key", "Escape"});
+  display.xdotool({"key", "ctrl+equal"});
+  display.xdotool({"key", "ctrl+equal"});
+  display.xdotool({"key", "space", "key", "period"});
+  ASSERT_TRUE(running.wait_for("one step", true)) << "Escape ends nothing; keys come in their order";
+  running.signal(SIGINT);
+  const Ran ran = running.finish();
+  EXPECT_EQ(ran.code, 0) << ran.err;
+  EXPECT_NE(display.settings().find("\"hidden\": true"), std::string::npos) << display.settings();
+  EXPECT_NE(display.settings().find("\"text_size\": 18"), std::string::npos) << display.settings();
 }
 
 TEST(Window, TheShowOutlivesTheDisplay) {

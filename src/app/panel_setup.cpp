@@ -1,0 +1,47 @@
+// Gathered from the rooms below and the user's folders.
+#include "app/panel_setup.h"
+
+#include <algorithm>
+#include <filesystem>
+#include <memory>
+
+#include "app/console_history.h"
+#include "app/paths.h"
+#include "app/window.h"
+#include "sim/behavior_type.h"
+
+namespace limber {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+// built in, and those of behaviors_lua
+std::vector<std::string> behavior_types() {
+  std::vector<std::string> names;
+  const BehaviorTypes built_in;
+  for (const auto& type : built_in.all()) names.push_back(type->name);
+  std::error_code fault;
+  for (const auto& entry : fs::directory_iterator(fs::path(data_dir()) / "behaviors_lua", fault)) {
+    if (entry.path().extension() == ".lua") names.push_back(entry.path().stem().string());
+  }
+  std::sort(names.begin(), names.end());
+  names.erase(std::unique(names.begin(), names.end()), names.end());
+  return names;
+}
+
+}  // namespace
+
+GuiOptions panel_options(Window* window) {
+  GuiOptions options;
+  options.behavior_types = behavior_types();
+  const auto history = std::make_shared<ConsoleHistory>(ConsoleHistory::default_file());
+  options.history = history->lines();
+  options.remember = [history](const std::string& line) { history->add(line); };
+  if (window == nullptr) return options;
+  options.copy = [window](const std::string& text) { window->clipboard(text); };
+  options.paste = [window] { return window->clipboard(); };
+  return options;
+}
+
+}  // namespace limber

@@ -1,0 +1,158 @@
+// Images in, messages out, and the panel's own undo.
+#include "gui/desk.h"
+
+#include <algorithm>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "base/text.h"
+#include "engine/morph.h"
+
+namespace limber {
+
+namespace {
+
+constexpr double kAskEvery = 1.0 / 20;  // s; the simulation gives a hundredth of its time to images at most
+constexpr double kNoticeLasts = 2.5;    // s
+constexpr std::size_t kMostEdits = 1000;
+
+}  // namespace
+
+std::vector<std::string> easings() {
+  std::vector<std::string> names;
+  for (std::string_view name : split(easing_names(), ',')) {
+    if (name.starts_with(' ')) name.remove_prefix(1);
+    names.emplace_back(name);
+  }
+  return names;
+}
+
+Message set_message(const std::string& path, const Row& row, const HandValues::Values& values) {
+  Message message{path, {}};
+  const bool truth = row.type == RowType::boolean || row.type == RowType::flags3;
+  for (std::uint32_t i = 0; i < row.width; i++)
+    message.args.push_back(truth ? Arg::of(values[i] != 0) : Arg::of(values[i]));
+  return message;
+}
+
+std::uint64_t Desk::send(Message message) {
+  Command command;
+  command.messages.push_back(std::move(message));
+  command.origin = Origin{Hand::panel, 0, 0, false};
+  link.inbox.push(std::move(command));
+  asked_ = link.ask_image();
+  asked_at_ = clock;
+  return asked_;
+}
+
+std::uint64_t Desk::send(std::string address, std::vector<Arg> args) {
+  return send(Message{std::move(address), std::move(args)});
+}
+
+void Desk::set(const PlacedRow& at, const HandValues::Values& values, bool held) {
+  HandValues::Values before{};
+  this->values(at, before);
+  if (std::exchange(holding_, held) && !done_.empty() && done_.back().path == at.path) {
+    done_.back().after = values;
+  } else {
+    if (done_.size() >= kMostEdits) done_.erase(done_.begin());
+    done_.push_back({at.path, before, values});
+  }
+  undone_.clear();
+  hand_.set(at.path, values, send(set_message(at.path, *at.place.row, values)));
+}
+
+void Desk::set_all(const std::string& pattern, double value) {
+  hand_.set(pattern, {value}, send(pattern, {Arg::of(value)}));
+}
+
+std::optional<double> Desk::shown(const std::string& pattern) const {
+  const HandValues::Values* const values = hand_.find(pattern);
+  return values == nullptr ? std::nullopt : std::optional((*values)[0]);
+}
+
+void Desk::set_back(const std::string& path, const HandValues::Values& values) {
+  const std::optional<PlacedRow> at = find(path);
+  if (!at) return say(fmt::format("{} is not there any more", path));
+  hand_.set(path, values, send(set_message(path, *at->place.row, values)));
+  say(path);
+}
+
+bool Desk::undo() {
+  if (done_.empty()) return false;
+  undone_.push_back(std::move(done_.back()));
+  done_.pop_back();
+  holding_ = false;
+  set_back(undone_.back().path, undone_.back().before);
+  return true;
+}
+
+bool Desk::redo() {
+  if (undone_.empty()) return false;
+  done_.push_back(std::move(undone_.back()));
+  undone_.pop_back();
+  holding_ = false;
+  set_back(done_.back().path, done_.back().after);
+  return true;
+}
+
+bool Desk::values(const PlacedRow& at, HandValues::Values& values) const {
+  if (const HandValues::Values* const hand = hand_.find(at.path)) {
+    values = *hand;
+    return true;
+  }
+  const double* const numbers = image->value(image->tree->numbers(at.place)).numbers;
+  if (numbers == nullptr) return false;
+  std::copy_n(numbers, at.place.row->width, values.begin());
+  return true;
+}
+
+std::string_view Desk::text(const TreePlace& place) const { return image->value(image->tree->numbers(place)).text; }
+
+std::optional<PlacedRow> Desk::find(std::string_view path) const {
+  if (image == nullptr) return std::nullopt;
+  PatternBudget budget;
+  const Result<std::vector<TreePlace>> places = image->tree->match(path, budget, 1);
+  if (!places || places->empty() || places->front().row == nullptr) return std::nullopt;
+  return PlacedRow{places->front(), std::string(path)};
+}
+
+double Desk::number(std::string_view path, double otherwise) const {
+  const std::optional<PlacedRow> at = find(path);
+  HandValues::Values values{};
+  return at && this->values(*at, values) ? values[0] : otherwise;
+}
+
+void Desk::recall(double number) {
+  if (number > this->number("/preset/count")) return say(fmt::format("there is no preset {}", number));
+  const std::vector<std::string> names = easings();
+  const auto easing = std::min(static_cast<std::size_t>(std::max(settings.easing, 0)), names.size() - 1);
+  send("/preset/recall", {Arg::of(number), Arg::of(settings.morph_seconds), Arg::of(std::string_view(names[easing]))});
+}
+
+void Desk::say(std::string text) {
+  notice = std::move(text);
+  notice_until = clock + kNoticeLasts;
+}
+
+void Desk::copied(const std::string& text) {
+  copy(text);
+  say(fmt::format("copied: {}", text));
+}
+
+void Desk::look(double clock_now) {
+  clock = clock_now;
+  now = link.snapshots.read();
+  if (std::shared_ptr<const Image> newest = link.images.read(); newest != nullptr && newest != image) {
+    image = std::move(newest);
+    hand_.heard(image->asks);
+  }
+  const bool waiting = image == nullptr || image->asks < asked_;
+  if (asked_ == 0 || (!waiting && clock - asked_at_ >= kAskEvery)) {
+    asked_ = link.ask_image();
+    asked_at_ = clock;
+  }
+}
+
+}  // namespace limber

@@ -1,0 +1,110 @@
+// Desk: what lies before a panel: what is (an image, the newest snapshot), what hands may do (messages), and what the
+// panels share among themselves. Nothing of the world is kept here.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "engine/link.h"
+#include "gui/fonts.h"
+#include "gui/hand_values.h"
+#include "gui/settings.h"
+#include "gui/widget_names.h"
+
+namespace limber {
+
+/// A row's place in the image's tree, with its address.
+struct PlacedRow {
+  TreePlace place;
+  std::string path;
+};
+
+/// What was set by the panel: for undo.
+struct PanelEdit {
+  std::string path;
+  HandValues::Values before{};
+  HandValues::Values after{};
+};
+
+struct GuiOptions;
+
+class Desk {
+ public:
+  explicit Desk(EngineLink& engine_link) : link(engine_link) {}
+
+  EngineLink& link;
+  std::shared_ptr<const Image> image;   ///< Null until the first has come.
+  std::shared_ptr<const Snapshot> now;  ///< Newer than the image; null until the first.
+  Fonts fonts;
+  double scale = 1;  ///< Pixels for what is a pixel at text of 16.
+  double clock = 0;  ///< s, of the frame; for what blinks or fades.
+  WidgetNames names;
+  PanelSettings settings;
+  const GuiOptions* options = nullptr;  ///< What the app has handed over.
+
+  // what panels tell each other
+  std::string selected;       ///< Address of the chosen thing; empty: none.
+  std::string reveal;         ///< The tree shows this thing once.
+  bool focus_search = false;  ///< The next frame's search field takes the keyboard.
+  bool help = false;          ///< F2.
+  std::string notice;         ///< A line that is shown for a while, such as what was copied.
+  double notice_until = 0;    ///< s
+  std::uint64_t errors = 0;   ///< Faults that stand, for lamps.
+
+  /// The clipboard; the window's, in tests one of their own.
+  std::function<void(const std::string&)> copy = [](const std::string&) {};
+
+  /// To the simulation, in its next tick. Returns the number of the ask for an image behind it.
+  std::uint64_t send(Message message);
+  std::uint64_t send(std::string address, std::vector<Arg> args = {});
+  /// Sets a row as the hand wishes; `held`: the hand goes on, so that undo takes all of it back at once.
+  void set(const PlacedRow& at, const HandValues::Values& values, bool held);
+  /// What the panel shows of a row: the hand's, else the image's. False: it is an action or a text.
+  bool values(const PlacedRow& at, HandValues::Values& values) const;
+  std::string_view text(const TreePlace& place) const;
+  /// The row of that address in the image, of a pattern the first; or nothing.
+  std::optional<PlacedRow> find(std::string_view path) const;
+  /// One number of a row, by address; what `otherwise` says where there is none.
+  double number(std::string_view path, double otherwise = 0) const;
+
+  /// The same for what a pattern reaches at once; `shown` then says what the hand said, until it is heard.
+  void set_all(const std::string& pattern, double value);
+  std::optional<double> shown(const std::string& pattern) const;
+  /// No hand holds anything: the next value that is set is an edit of its own.
+  void let_go() { holding_ = false; }
+
+  /// A preset by its number from 1, in the time that is set.
+  void recall(double number);
+
+  bool undo();
+  bool redo();
+  void say(std::string text);
+  void copied(const std::string& text);
+
+  /// A frame begins: the newest of everything, and an image is asked for when its time has come.
+  void look(double clock_now);
+
+ private:
+  void set_back(const std::string& path, const HandValues::Values& values);
+
+  HandValues hand_;
+  std::vector<PanelEdit> done_;
+  std::vector<PanelEdit> undone_;
+  bool holding_ = false;
+  std::uint64_t asked_ = 0;
+  double asked_at_ = 0;
+};
+
+/// Names of the ways in which morphs go.
+std::vector<std::string> easings();
+
+/// The message that sets a row to these values.
+Message set_message(const std::string& path, const Row& row, const HandValues::Values& values);
+
+}  // namespace limber

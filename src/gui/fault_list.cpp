@@ -1,0 +1,40 @@
+// Lines of the log, read for files.
+#include "gui/fault_list.h"
+
+#include <algorithm>
+#include <cctype>
+
+namespace limber {
+
+Fault fault_of(const LogLine& line) {
+  Fault fault{line, {}, {}};
+  // "file.lua:12: what"
+  const std::size_t colon = line.text.find(".lua:");
+  if (colon == std::string::npos || line.text.find('\n') < colon) return fault;
+  const std::size_t end = colon + 4;
+  std::size_t digits = end + 1;
+  while (digits < line.text.size() && std::isdigit(static_cast<unsigned char>(line.text[digits])) != 0) digits++;
+  if (digits == end + 1) return fault;
+  std::size_t begin = line.text.rfind(' ', colon);
+  begin = begin == std::string::npos ? 0 : begin + 1;
+  fault.file = line.text.substr(begin, end - begin);
+  fault.place = line.text.substr(begin, digits - begin);
+  return fault;
+}
+
+void FaultList::hear(const LogLine& line) {
+  if (line.level == LogLevel::info && line.text.ends_with(kMended)) {
+    const std::string file = line.text.substr(0, line.text.size() - kMended.size());
+    std::erase_if(faults_, [&](const Fault& f) { return f.line.level == LogLevel::error && f.file == file; });
+  }
+  if (line.level != LogLevel::warning && line.level != LogLevel::error) return;
+  if (faults_.size() >= kMost) faults_.pop_front();
+  faults_.push_back(fault_of(line));
+}
+
+std::size_t FaultList::errors() const {
+  return static_cast<std::size_t>(
+      std::count_if(faults_.begin(), faults_.end(), [](const Fault& f) { return f.line.level == LogLevel::error; }));
+}
+
+}  // namespace limber

@@ -1,0 +1,283 @@
+// One frame of the panel.
+#include "gui/gui.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <fmt/format.h>
+#include <imgui.h>
+#include <imgui_impl_opengl3.h>
+
+#include "base/log.h"
+#include "gui/theme.h"
+
+namespace limber {
+
+namespace {
+
+constexpr ImGuiWindowFlags kFixed = ImGuiWindowFlags_NoTitleBar | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoResize |
+                                    ImGuiWindowFlags_NoCollapse | ImGuiWindowFlags_NoSavedSettings |
+                                    ImGuiWindowFlags_NoBringToFrontOnFocus | ImGuiWindowFlags_NoScrollbar |
+                                    ImGuiWindowFlags_NoScrollWithMouse;  // what scrolls lies in a window within
+
+void map_keys(ImGuiIO& io) {
+  const auto map = [&](ImGuiKey to, GuiKey from) { io.KeyMap[to] = static_cast<int>(from); };
+  map(ImGuiKey_Tab, GuiKey::tab);
+  map(ImGuiKey_LeftArrow, GuiKey::left);
+  map(ImGuiKey_RightArrow, GuiKey::right);
+  map(ImGuiKey_UpArrow, GuiKey::up);
+  map(ImGuiKey_DownArrow, GuiKey::down);
+  map(ImGuiKey_PageUp, GuiKey::page_up);
+  map(ImGuiKey_PageDown, GuiKey::page_down);
+  map(ImGuiKey_Home, GuiKey::home);
+  map(ImGuiKey_End, GuiKey::end);
+  map(ImGuiKey_Insert, GuiKey::insert);
+  map(ImGuiKey_Delete, GuiKey::erase);
+  map(ImGuiKey_Backspace, GuiKey::backspace);
+  map(ImGuiKey_Space, GuiKey::space);
+  map(ImGuiKey_Enter, GuiKey::enter);
+  map(ImGuiKey_Escape, GuiKey::escape);
+  map(ImGuiKey_A, GuiKey::a);
+  map(ImGuiKey_C, GuiKey::c);
+  map(ImGuiKey_V, GuiKey::v);
+  map(ImGuiKey_X, GuiKey::x);
+  map(ImGuiKey_Y, GuiKey::y);
+  map(ImGuiKey_Z, GuiKey::z);
+}
+
+void set_clipboard(void* options, const char* text) { static_cast<const GuiOptions*>(options)->copy(text); }
+const char* get_clipboard(void* options) {
+  static std::string pasted;
+  pasted = static_cast<const GuiOptions*>(options)->paste();
+  return pasted.c_str();
+}
+
+}  // namespace
+
+Gui::Gui(EngineLink& link, GuiOptions options)
+    : options_(std::move(options)), context_(ImGui::CreateContext()), desk_(link) {
+  ImGui::SetCurrentContext(context_);
+  ImGuiIO& io = ImGui::GetIO();
+  io.IniFilename = nullptr;
+  io.LogFilename = nullptr;
+  io.ConfigFlags |= ImGuiConfigFlags_NavEnableKeyboard;
+  io.ConfigInputTextCursorBlink = options_.paints;
+  io.ClipboardUserData = &options_;
+  io.SetClipboardTextFn = set_clipboard;
+  io.GetClipboardTextFn = get_clipboard;
+  io.MousePos = {-1, -1};
+  map_keys(io);
+  files_ = find_fonts(options_.font_root);
+  for (const std::string& line : files_.said) log_warning("{}", line);
+  desk_.settings = options_.settings;
+  desk_.copy = options_.copy;
+  desk_.options = &options_;
+  for (const PanelKind& kind : panel_kinds()) seats_.push_back({kind, kind.make()});
+  if (options_.paints) ImGui_ImplOpenGL3_Init("#version 330 core");
+}
+
+Gui::~Gui() {
+  ImGui::SetCurrentContext(context_);
+  if (options_.paints) ImGui_ImplOpenGL3_Shutdown();
+  ImGui::DestroyContext(context_);
+}
+
+void Gui::renew_fonts(const GuiFrame& frame) {
+  const double scale = std::clamp(frame.display_scale, 0.5, 4.0);
+  const double pixels = std::floor(desk_.settings.text_size * scale);
+  if (pixels == pixels_) return;
+  pixels_ = pixels;
+  desk_.scale = pixels / 16;
+  desk_.fonts = load_fonts(files_, pixels);
+  apply_theme(desk_.scale);
+  if (!options_.paints) {
+    ImGui::GetIO().Fonts->SetTexID(nullptr);
+  } else if (painted_fonts_) {
+    ImGui_ImplOpenGL3_DestroyFontsTexture();
+    ImGui_ImplOpenGL3_CreateFontsTexture();
+  }
+}
+
+void Gui::frame(const GuiFrame& frame) {
+  ImGui::SetCurrentContext(context_);
+  ImGuiIO& io = ImGui::GetIO();
+  renew_fonts(frame);
+  io.DisplaySize = {static_cast<float>(frame.width), static_cast<float>(frame.height)};
+  io.DeltaTime = static_cast<float>(std::clamp(frame.clock - last_clock_, 1e-4, 0.5));
+  last_clock_ = frame.clock;
+  if (options_.paints) {
+    ImGui_ImplOpenGL3_NewFrame();
+    painted_fonts_ = true;
+  }
+  const std::vector<KeyPress> keys = input_.frame();
+  desk_.look(frame.clock);
+  desk_.names.clear();
+  layout_ = lay_out(frame.width, frame.height, desk_.scale);
+  hear_keys(keys);
+  ImGui::NewFrame();
+  for (const Seat& seat : seats_) seat.panel->hear(desk_);
+  if (!desk_.settings.hidden && desk_.now != nullptr && desk_.image != nullptr) {
+    for (std::size_t i = 0; i < layout_.slots.size(); i++) draw_slot(static_cast<Slot>(i));
+  }
+  if (desk_.help) draw_help();
+  if (desk_.clock < desk_.notice_until) draw_notice();
+  if (!ImGui::IsAnyItemActive()) desk_.let_go();
+  ImGui::Render();
+}
+
+void Gui::paint() {
+  ImGui::SetCurrentContext(context_);
+  if (options_.paints) ImGui_ImplOpenGL3_RenderDrawData(ImGui::GetDrawData());
+}
+
+bool Gui::wants_mouse() const {
+  ImGui::SetCurrentContext(context_);
+  return ImGui::GetIO().WantCaptureMouse;
+}
+
+std::vector<HotkeyAction> Gui::take_actions() { return std::exchange(actions_, {}); }
+
+void Gui::hear_keys(const std::vector<KeyPress>& keys) {
+  const ImGuiIO& io = ImGui::GetIO();
+  for (const KeyPress& press : keys) {
+    // while somebody goes about by keys, these act on what is chosen
+    if (io.NavVisible && (press.key == GuiKey::space || press.key == GuiKey::home)) continue;
+    const Hotkey* const hotkey = hotkey_of(press, io.WantTextInput);
+    if (hotkey != nullptr) act(hotkey->action, press);
+  }
+}
+
+void Gui::act(HotkeyAction action, const KeyPress& press) {
+  PanelSettings& settings = desk_.settings;
+  const auto text_size = [&](double by) {
+    settings.text_size = std::clamp(settings.text_size + by, PanelSettings::kSmallestText, PanelSettings::kLargestText);
+    desk_.say(fmt::format("text of {:.0f} px", settings.text_size));
+  };
+  switch (action) {
+    case HotkeyAction::play_pause:
+      if (desk_.now != nullptr) desk_.send(desk_.now->paused ? "/transport/play" : "/transport/pause");
+      break;
+    case HotkeyAction::step:
+      desk_.send("/transport/step");
+      break;
+    case HotkeyAction::reset:
+      desk_.send("/transport/reset");
+      break;
+    case HotkeyAction::hide:
+      settings.hidden = !settings.hidden;
+      break;
+    case HotkeyAction::help:
+      desk_.help = !desk_.help;
+      break;
+    case HotkeyAction::search:
+      desk_.focus_search = true;
+      break;
+    case HotkeyAction::undo:
+      if (!desk_.undo()) desk_.say("there is nothing to undo");
+      break;
+    case HotkeyAction::redo:
+      if (!desk_.redo()) desk_.say("there is nothing to redo");
+      break;
+    case HotkeyAction::larger:
+      text_size(1);
+      break;
+    case HotkeyAction::smaller:
+      text_size(-1);
+      break;
+    case HotkeyAction::recall:
+      desk_.recall(static_cast<int>(press.key) - static_cast<int>(GuiKey::digit_1) + 1);
+      break;
+    case HotkeyAction::full_screen:
+    case HotkeyAction::home_view:
+      actions_.push_back(action);
+      break;
+  }
+}
+
+// the panels of a slot: side by side above, elsewhere as tabs
+void Gui::draw_slot(Slot slot) {
+  const PanelRect& rect = layout_.at(slot);
+  std::vector<Seat*> seats;
+  for (Seat& seat : seats_) {
+    if ((layout_.compact ? seat.kind.compact : seat.kind.wide) == slot) seats.push_back(&seat);
+  }
+  if (rect.empty() || seats.empty()) return;
+  std::stable_sort(seats.begin(), seats.end(),
+                   [](const Seat* a, const Seat* b) { return a->kind.order < b->kind.order; });
+  ImGui::SetNextWindowPos({static_cast<float>(rect.x), static_cast<float>(rect.y)});
+  ImGui::SetNextWindowSize({static_cast<float>(rect.width), static_cast<float>(rect.height)});
+  if (ImGui::Begin(fmt::format("##slot{}", static_cast<int>(slot)).c_str(), nullptr, kFixed)) {
+    if (slot == Slot::top) {
+      if (!layout_.compact) ImGui::SetCursorPosY((ImGui::GetWindowHeight() - ImGui::GetFrameHeight()) / 2);
+      for (Seat* const seat : seats) seat->panel->draw(desk_);
+    } else {
+      draw_tabs(static_cast<std::size_t>(slot), seats);
+    }
+  }
+  ImGui::End();
+}
+
+void Gui::draw_tabs(std::size_t slot, const std::vector<Seat*>& seats) {
+  std::size_t& chosen = chosen_[slot];
+  chosen = std::min(chosen, seats.size() - 1);
+  for (std::size_t i = 0; i < seats.size(); i++) {
+    const PanelKind& kind = seats[i]->kind;
+    const std::string badge = seats[i]->panel->badge(desk_);
+    const std::string title = fmt::format("{}{}{}", kind.title, badge.empty() ? "" : "  ", badge);
+    if (i > 0) ImGui::SameLine();
+    if (seats.size() == 1) {
+      ImGui::AlignTextToFramePadding();
+      ImGui::TextUnformatted(title.c_str());
+      continue;
+    }
+    ImGui::PushStyleColor(ImGuiCol_Button, packed(i == chosen ? Tone::field : Tone::panel, i == chosen ? 1 : 0));
+    ImGui::PushStyleColor(ImGuiCol_Text, packed(i == chosen ? Tone::text : Tone::dim));
+    if (ImGui::Button(fmt::format("{}###tab_{}", title, kind.name).c_str())) chosen = i;
+    ImGui::PopStyleColor(2);
+    desk_.names.note(fmt::format("tab:{}", kind.name));
+  }
+  ImGui::PushID(seats[chosen]->kind.name.data());
+  seats[chosen]->panel->draw(desk_);
+  ImGui::PopID();
+}
+
+void Gui::draw_help() const {
+  const ImVec2 size = ImGui::GetIO().DisplaySize;
+  ImGui::SetNextWindowPos({size.x / 2, size.y / 2}, 0, {0.5F, 0.5F});
+  ImGui::SetNextWindowSizeConstraints({0, 0}, {size.x - 16, size.y - 16});
+  ImGui::SetNextWindowFocus();
+  ImGui::SetNextWindowBgAlpha(1);
+  if (ImGui::Begin("##help", nullptr, kFixed | ImGuiWindowFlags_AlwaysAutoResize)) {
+    ImGui::TextUnformatted("Keys and hands");
+    ImGui::Separator();
+    const auto line = [&](const char* keys, const char* does) {
+      ImGui::PushFont(desk_.fonts.code);
+      ImGui::PushStyleColor(ImGuiCol_Text, packed(Tone::accent));
+      ImGui::TextUnformatted(keys);
+      ImGui::PopStyleColor();
+      ImGui::PopFont();
+      ImGui::SameLine(ImGui::GetFontSize() * 11);
+      ImGui::TextUnformatted(does);
+    };
+    for (const Hotkey& hotkey : hotkeys()) line(hotkey.shown, hotkey.does);
+    ImGui::Separator();
+    line("drag", "turn the view; Shift: shift it; wheel: nearer, further");
+    line("drag a bar", "set a value; Ctrl and click: type it; right click: copy its address");
+    line("Tab, arrows, Enter", "go about and set values by keys");
+  }
+  ImGui::End();
+}
+
+void Gui::draw_notice() const {
+  const ImVec2 size = ImGui::GetIO().DisplaySize;
+  const auto y = static_cast<float>(layout_.free.y + layout_.free.height - 8 * desk_.scale);
+  const auto x = static_cast<float>(layout_.free.x + layout_.free.width / 2);
+  ImGui::SetNextWindowPos({std::min(x, size.x), std::min(y, size.y)}, 0, {0.5F, 1});
+  if (ImGui::Begin(
+          "##notice", nullptr,
+          kFixed | ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoInputs | ImGuiWindowFlags_NoFocusOnAppearing))
+    ImGui::TextUnformatted(desk_.notice.c_str());
+  ImGui::End();
+}
+
+}  // namespace limber

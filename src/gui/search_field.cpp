@@ -1,0 +1,28 @@
+// An input text with a sign in it.
+#include "gui/search_field.h"
+
+#include <imgui.h>
+#include <imgui_stdlib.h>
+
+#include "gui/icons.h"
+#include "gui/theme.h"
+
+namespace limber {
+
+bool search_field(Desk& desk, const char* name, const char* hint, std::string& text, float width) {
+  const ImGuiStyle& style = ImGui::GetStyle();
+  const float sign = ImGui::GetFontSize() * 1.25F;
+  ImGui::PushStyleVar(ImGuiStyleVar_FramePadding, {style.FramePadding.x + sign, style.FramePadding.y});
+  ImGui::SetNextItemWidth(width);
+  ImGui::PushID(name);
+  const bool changed = ImGui::InputTextWithHint("##search", hint, &text, ImGuiInputTextFlags_AutoSelectAll);
+  ImGui::PopID();
+  ImGui::PopStyleVar();
+  desk.names.note(name);
+  const ImVec2 low = ImGui::GetItemRectMin();
+  draw_icon(Icon::search, low.x + style.FramePadding.x + sign * 0.35F, low.y + ImGui::GetFrameHeight() / 2,
+            ImGui::GetFontSize() * 0.36F, packed(Tone::dim));
+  return changed;
+}
+
+}  // namespace limber

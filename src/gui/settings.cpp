@@ -1,0 +1,103 @@
+// JSON, and a file that is written beside itself first.
+#include "gui/settings.h"
+
+#include <algorithm>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+
+#include <nlohmann/json.hpp>
+
+#include "base/log.h"
+#include "base/text.h"
+
+namespace limber {
+
+namespace {
+
+namespace fs = std::filesystem;
+using Json = nlohmann::json;
+
+constexpr int kLargestWindow = 16384;
+constexpr double kLongestMorph = 60;
+constexpr std::uintmax_t kLargestFile = 1u << 20;
+
+double number_of(const Json& json, const char* name, double otherwise, double low, double high) {
+  const auto found = json.find(name);
+  return found != json.end() && found->is_number() ? std::clamp(found->get<double>(), low, high) : otherwise;
+}
+
+}  // namespace
+
+Result<PanelSettings> read_settings(std::string_view text) {
+  const Json json = Json::parse(text, nullptr, false);
+  if (!json.is_object()) return Error{"it is no JSON object"};
+  PanelSettings settings;
+  settings.text_size =
+      number_of(json, "text_size", settings.text_size, PanelSettings::kSmallestText, PanelSettings::kLargestText);
+  settings.morph_seconds = number_of(json, "morph_seconds", settings.morph_seconds, 0, kLongestMorph);
+  settings.easing = static_cast<int>(number_of(json, "easing", settings.easing, 0, 3));
+  settings.window_width = static_cast<int>(number_of(json, "window_width", 0, 0, kLargestWindow));
+  settings.window_height = static_cast<int>(number_of(json, "window_height", 0, 0, kLargestWindow));
+  if (const auto hidden = json.find("hidden"); hidden != json.end() && hidden->is_boolean())
+    settings.hidden = hidden->get<bool>();
+  if (const auto list = json.find("favourites"); list != json.end() && list->is_array()) {
+    for (const Json& path : *list) {
+      if (path.is_string()) settings.favourites.insert(path.get<std::string>());
+    }
+  }
+  return settings;
+}
+
+std::string settings_text(const PanelSettings& s) {
+  const Json json = {{"text_size", s.text_size},         {"hidden", s.hidden},
+                     {"morph_seconds", s.morph_seconds}, {"easing", s.easing},
+                     {"favourites", s.favourites},       {"window_width", s.window_width},
+                     {"window_height", s.window_height}};
+  return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+std::string settings_file() {
+  const char* const config = std::getenv("XDG_CONFIG_HOME");
+  if (config != nullptr && config[0] == '/') return std::string(config) + "/limber/panel.json";
+  const char* const home = std::getenv("HOME");
+  return home != nullptr && home[0] == '/' ? std::string(home) + "/.config/limber/panel.json" : "";
+}
+
+PanelSettings load_settings(const std::string& file) {
+  std::error_code fault;
+  if (file.empty() || !fs::is_regular_file(file, fault)) return {};
+  std::string text;
+  if (fs::file_size(file, fault) <= kLargestFile && !fault) {
+    std::ifstream in(file, std::ios::binary);
+    text.assign(std::istreambuf_iterator<char>(in), {});
+  }
+  const Result<PanelSettings> read = read_settings(text);
+  if (read) return *read;
+  const std::string aside = file + ".damaged";
+  fs::rename(file, aside, fault);
+  log_warning("the panel's settings in {} are damaged ({}); {}, and the panel begins afresh", printable(file),
+              read.error(),
+              fault ? "they stay there until the next ones" : "they are set aside as " + printable(aside));
+  return {};
+}
+
+void save_settings(const std::string& file, const PanelSettings& settings) {
+  if (file.empty()) return;
+  std::error_code fault;
+  fs::create_directories(fs::path(file).parent_path(), fault);
+  const std::string beside = file + ".new";
+  bool written = false;
+  {
+    std::ofstream out(beside, std::ios::binary | std::ios::trunc);
+    out << settings_text(settings);
+    out.close();
+    written = out.good();
+  }
+  if (written) fs::rename(beside, file, fault);
+  if (!written || fault)
+    log_warning("the panel's settings can't be kept in {}: is the folder writable?", printable(file));
+}
+
+}  // namespace limber
