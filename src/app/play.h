@@ -25,7 +25,10 @@ struct PlayOptions {
   std::string osc_allow;
   std::vector<std::string> osc_out;
   bool osc_optional = false;
-  std::string query;  ///< Empty: not given.
+  std::string query;             ///< Empty: not given.
+  std::string record;            ///< A take goes there.
+  std::string replay;            ///< This take is played.
+  bool current_scripts = false;  ///< A replay with the scripts of today.
 };
 
 /// Plays; returns the exit code of product.md: 0 fine, 1 the input, 2 usage, 3 the machine. [main]

@@ -7,6 +7,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "base/vec.h"
@@ -149,6 +150,7 @@ struct BodyModel {
   std::vector<FileJoint> file_joints;
   std::vector<Problem> problems;
   std::vector<std::string> files;  ///< Every file that was read for it: the URDF and its meshes.
+  std::vector<std::pair<std::string, std::string>> meshes_found;  ///< As the URDF names them, and their files.
 };
 
 }  // namespace limber

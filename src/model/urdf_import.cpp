@@ -38,6 +38,8 @@ class MeshStep {
     }
   }
   const std::set<std::string>& files() const { return files_; }
+  /// Names and files.
+  const std::map<std::string, std::string>& named() const { return named_; }
 
  private:
   using Found = Result<std::shared_ptr<const MeshModel>>;
@@ -70,9 +72,10 @@ class MeshStep {
     if (const Result<MeshFormat> format = mesh_format_of(uri); !format) {
       return Error{fmt::format("'{}' {}", printable(uri), format.error())};
     }
-    const Result<std::string> file = find_mesh(uri, folder_, options_.package_paths);
+    const Result<std::string> file = meshes_.find(uri, folder_, options_.package_paths);
     if (!file) return Error{file.error()};
     files_.insert(*file);
+    named_[uri] = *file;
     return meshes_.load(*file, scale);
   }
 
@@ -82,6 +85,7 @@ class MeshStep {
   Problems& problems_;
   std::map<std::string, Found> found_;
   std::set<std::string> files_;
+  std::map<std::string, std::string> named_;
 };
 
 Result<std::shared_ptr<const BodyModel>> import_bytes(std::string_view bytes, const std::string& path,
@@ -108,6 +112,7 @@ Result<std::shared_ptr<const BodyModel>> import_bytes(std::string_view bytes, co
   model->problems = problems.take();
   model->files.assign(1, path);
   model->files.insert(model->files.end(), step.files().begin(), step.files().end());
+  model->meshes_found.assign(step.named().begin(), step.named().end());
   return std::shared_ptr<const BodyModel>(std::move(model));
 }
 

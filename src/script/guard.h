@@ -78,6 +78,7 @@ class Guard {
   void end();
   void stop(Reason reason);
   void heal();
+  bool skip_call(int arguments);
   void take_fault(int status, int function);
   void place_at_function(int function);
   void note_place(lua_State* state);
