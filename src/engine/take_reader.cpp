@@ -168,7 +168,14 @@ std::shared_ptr<const Sources> TakeReader::sources(std::uint32_t files) {
   for (const auto& [path, content] : list.files) {
     if (content != 0) set->contents[path] = contents_[content - 1];
   }
-  made = std::make_shared<const Sources>(list.found, set);
+  // a reload tells a model that changed by its being another one
+  TakeFileList of_models{{}, list.meshes, {}, false, "", ""};
+  for (const auto& file : list.files) {
+    if (!file.first.ends_with(".lua")) of_models.files.push_back(file);
+  }
+  std::shared_ptr<ModelLibrary>& library = libraries_[text_of(of_models)];
+  if (library == nullptr) library = std::make_shared<ModelLibrary>(set);
+  made = std::make_shared<const Sources>(list.found, set, library);
   return made;
 }
 

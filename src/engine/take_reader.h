@@ -61,6 +61,7 @@ class TakeReader {
   std::vector<std::shared_ptr<const std::string>> contents_;
   std::vector<TakeFileList> lists_;
   std::vector<std::shared_ptr<const Sources>> sources_;
+  std::map<std::string, std::shared_ptr<ModelLibrary>> libraries_;  // by all that is in models and meshes
   std::optional<TakeEnd> end_;
   std::string damage_;
 };

@@ -30,8 +30,9 @@ const T* Sources::known(std::map<std::string, T> Sources::*list, const std::stri
   return nullptr;
 }
 
-Sources::Sources(std::map<std::string, std::string> found, const std::shared_ptr<const FileSet>& files)
-    : kept_files_(files), library_(std::make_shared<ModelLibrary>(files)), found_(std::move(found)) {}
+Sources::Sources(std::map<std::string, std::string> found, const std::shared_ptr<const FileSet>& files,
+                 std::shared_ptr<ModelLibrary> library)
+    : kept_files_(files), library_(std::move(library)), found_(std::move(found)) {}
 
 // as an earlier run has found it, else as `find` does
 template <class Find>

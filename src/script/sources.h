@@ -35,7 +35,10 @@ class Sources {
   explicit Sources(std::shared_ptr<const Sources> again = nullptr) : again_(std::move(again)) {}
 
   /// An earlier run's that was kept: all that it has not read is not there, whatever the disk holds.
-  Sources(std::map<std::string, std::string> found, const std::shared_ptr<const FileSet>& files);
+  /// `library`: the models that were made of those files before; runs that share it have one model where they load the
+  /// same, as runs from the disk do.
+  Sources(std::map<std::string, std::string> found, const std::shared_ptr<const FileSet>& files,
+          std::shared_ptr<ModelLibrary> library);
 
   /// As ScriptFiles finds them.
   Result<std::string> find(const ScriptFiles& files, std::string_view name);
