@@ -26,6 +26,7 @@
 #include "app/play.h"
 #include "app/preset.h"
 #include "app/send.h"
+#include "app/take.h"
 #include "base/build_info.h"
 #include "base/text.h"
 
@@ -33,8 +34,8 @@ namespace limber {
 
 namespace {
 
-constexpr std::array<std::string_view, 11> kCommands = {"play",     "console",  "monitor", "send",   "new",   "inspect",
-                                                        "describe", "annotate", "bench",   "preset", "doctor"};
+constexpr std::array<std::string_view, 12> kCommands = {"play",     "console",  "monitor", "send",   "new",  "inspect",
+                                                        "describe", "annotate", "bench",   "preset", "take", "doctor"};
 
 constexpr const char* kAbout =
     "Limber: a live simulator of actuated, articulated bodies, scripted in Lua, played over OSC.\n\n"
@@ -108,6 +109,17 @@ CLI::App* add_play(CLI::App& app, PlayOptions& o) {
       ->allow_extra_args(false);
   play->add_flag("--watch", o.watch,
                  "with --fast too, run the scene again when one of its files is saved; else it is done anyway");
+  CLI::Option* record =
+      play->add_option("--record", o.record,
+                       "record all that comes in, and the scene, so that it can be replayed to the bit")
+          ->type_name("TAKE");
+  CLI::Option* replay =
+      play->add_option("--replay", o.replay, "play that take again, with the scene and files that it holds")
+          ->type_name("TAKE")
+          ->excludes(record);
+  play->add_flag("--with-current-scripts", o.current_scripts,
+                 "with --replay, the scene as it is on the disk now; tells where the runs part")
+      ->needs(replay);
   play->add_flag("--strict", o.strict, "end with 1 at any script error, refused value or health event");
   play->add_flag("--hash", o.hash, "print the state hash at the end");
   return play;
@@ -145,6 +157,7 @@ struct CommandLine {
   SendCommand send;
   NewCommand fresh;
   PresetCommand preset;
+  TakeCommand take;
   bool json = false;
   bool markdown = false;
   std::vector<std::string> package_paths;
@@ -242,6 +255,16 @@ void add_preset(CLI::App& app, PresetCommand& command) {
       ->type_name("SCENE.lua");
 }
 
+void add_take(CLI::App& app, TakeCommand& command) {
+  CLI::App* take = app.add_subcommand("take", "takes that were recorded");
+  take->require_subcommand(1);
+  CLI::App* info = take->add_subcommand("info", "what a take holds, and whether it is whole");
+  info->add_option("file", command.file, "the take")->type_name("TAKE")->required();
+  take->footer(
+      "  limber my.lua --record evening.take\n"
+      "  limber --replay evening.take --fast");
+}
+
 // what was wrong, as CLI11 tells it; for an option that there is not, the near one
 std::string usage_text(const CLI::App& app, const CLI::ParseError& error) {
   const CLI::App* command = app.get_subcommands().empty() ? &app : app.get_subcommands().front();
@@ -276,6 +299,7 @@ int run_command_line(int argc, char** argv) {
   add_send(app, line.send);
   add_new(app, line.fresh);
   add_preset(app, line.preset);
+  add_take(app, line.take);
   CLI::App* annotate = app.add_subcommand("annotate", "definitions of all that scripts see, for editors (LuaCATS)");
   annotate->add_option("file", line.definitions, "where they go; left out: stdout")->type_name("FILE");
   app.add_subcommand("doctor", "what works on this machine: ports, buffers, data");
@@ -305,6 +329,7 @@ int run_command_line(int argc, char** argv) {
   if (command == "send") return send_command(line.send);
   if (command == "new") return new_command(line.fresh);
   if (command == "preset") return preset_command(line.preset);
+  if (command == "take") return take_command(line.take);
   if (command == "annotate") return annotate_command(line.definitions);
   if (command == "bench") return bench_command(line.bench);
   if (command == "doctor") return doctor_command();

@@ -94,6 +94,9 @@ Result<EngineOptions> parse_engine(const PlayOptions& options, const std::string
   engine.ticks = options.ticks;
   engine.duration = options.duration;
   engine.preset = options.preset;
+  engine.record = options.record;
+  engine.replay = options.replay;
+  engine.current_scripts = options.current_scripts;
   for (const std::string& text : options.sets) {
     Result<Message> set = parse_set(text);
     if (!set) return Error{set.error()};
@@ -215,6 +218,11 @@ int finish(const PlayOptions& options, Engine& engine, bool interrupted) {
     fmt::print("hash {:016x} tick {}\n", engine.state_hash(), engine.world().tick());
     std::fflush(stdout);
   }
+  if (engine.replays()) {
+    const TakeVerdict verdict = engine.verdict();
+    fmt::print(stderr, "limber: {}\n", text_of(verdict));
+    if ((verdict.parted && !options.current_scripts) || !verdict.damage.empty()) return kInput;
+  }
   if (options.strict && engine.faults() > 0)
     return fail(kInput, "--strict: there was a script error, a refused value or a health event, see above");
   return kFine;
@@ -269,7 +277,7 @@ int play_scene(const PlayOptions& options, EngineOptions engine_options, const O
   Network network(link, osc, live_offsets());
   ConsoleServer console(link, {.folder = "", .scene = printable(options.scene)});
   std::optional<SceneWatch> scene_watch;
-  if (!options.fast || options.watch) scene_watch.emplace(link, engine, scene_file);
+  if ((!options.fast || options.watch) && options.replay.empty()) scene_watch.emplace(link, engine, scene_file);
   QueryServer query(link, query_doors(network, osc.allow));
   const auto close = [&](bool ended) {
     scene_watch.reset();
@@ -326,7 +334,8 @@ int render_scene(const PlayOptions& options, EngineOptions engine_options, const
 
 int play_command(const PlayOptions& options) {
   const sigset_t signals = block_signals();
-  fmt::print(stderr, "limber {} ({}): {}\n", version(), commit(), printable(options.scene));
+  const bool replays = !options.replay.empty();
+  fmt::print(stderr, "limber {} ({}): {}\n", version(), commit(), printable(replays ? options.replay : options.scene));
   if (Result<void> picture = check_picture(options.picture, options.duration); !picture)
     return fail(kUsage, picture.error());
   Result<OscOptions> osc = parse_osc(options);
@@ -335,7 +344,7 @@ int play_command(const PlayOptions& options) {
   if (!query) return fail(kUsage, query.error());
   if (options.fast && !*query) query->emplace();  // no port either
   std::vector<std::string> looked;
-  const std::string scene = find_scene(options.scene, looked);
+  const std::string scene = replays ? options.scene : find_scene(options.scene, looked);
   Result<EngineOptions> engine_options = parse_engine(options, scene);
   if (!engine_options) return fail(kUsage, engine_options.error());
   if (scene.empty()) return fail(kInput, no_scene(options.scene, looked));

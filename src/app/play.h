@@ -27,7 +27,10 @@ struct PlayOptions {
   std::string osc_allow;
   std::vector<std::string> osc_out;
   bool osc_optional = false;
-  std::string query;  ///< Empty: not given.
+  std::string query;             ///< Empty: not given.
+  std::string record;            ///< A take goes there.
+  std::string replay;            ///< This take is played.
+  bool current_scripts = false;  ///< A replay with the scripts of today.
   PictureOptions picture;
 };
 

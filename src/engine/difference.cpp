@@ -52,8 +52,13 @@ bool all_made_the_same(const std::vector<T>& a, const std::vector<T>& b) {
   return std::equal(a.begin(), a.end(), b.begin(), b.end(), [](const T& x, const T& y) { return same_making(x, y); });
 }
 
+// by content: which of two equal models a run has got depends on what was loaded before
+bool same_model(const std::shared_ptr<const BodyModel>& a, const std::shared_ptr<const BodyModel>& b) {
+  return a == b || (a != nullptr && b != nullptr && a->content == b->content);
+}
+
 bool same_making(const BodyDescription& a, const BodyDescription& b) {
-  return a.model == b.model && all_made_the_same(a.parts, b.parts) && all_made_the_same(a.joints, b.joints) &&
+  return same_model(a.model, b.model) && all_made_the_same(a.parts, b.parts) && all_made_the_same(a.joints, b.joints) &&
          all_made_the_same(a.motors, b.motors);
 }
 

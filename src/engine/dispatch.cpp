@@ -44,6 +44,8 @@ constexpr Irregular kIrregulars[] = {
      "Brings that back, at once or over seconds: smooth, linear, in or out."},
     {"/preset/morph", "preset preset amount", "What lies between two, 0: the first, 1: the second."},
     {"/preset/delete", "name", "Forgets a preset."},
+    {"/take/record", "[name]", "From the scene's start on, all that comes in is recorded, so that it can be replayed."},
+    {"/take/stop", "", "The take ends; its file is whole."},
 };
 
 // the seed's that took a joint's frames apart; refused with the reason
@@ -89,7 +91,10 @@ Dispatch::Dispatch(World& world, Presets* presets, std::span<const Table* const>
   for (const Table* table : more) add_class(*table);
   for (const Irregular& irregular : kIrregulars) {
     const bool of_presets = irregular.address.starts_with("/preset/");
-    by_name_[std::string(irregular.address)].irregular = of_presets ? &Dispatch::preset : &Dispatch::list;
+    const bool of_takes = irregular.address.starts_with("/take/");
+    by_name_[std::string(irregular.address)].irregular = of_presets ? &Dispatch::preset
+                                                         : of_takes ? &Dispatch::take
+                                                                    : &Dispatch::list;
   }
   // those that are neither
   by_name_["/list/presets"].irregular = &Dispatch::preset;
@@ -363,6 +368,20 @@ Outcome Dispatch::preset(const Message& message) {
   std::array<char, 96> buffer;
   const std::string_view address = plain_address(message.address, buffer);
   return presets_->execute(address.substr(address.find_last_of('/') + 1), message, world_);
+}
+
+Outcome Dispatch::take(const Message& message) {
+  std::array<char, 96> buffer;
+  const std::span<const Arg> args = message.args;
+  if (plain_address(message.address, buffer) == "/take/record") {
+    if (args.size() > 1 || (args.size() == 1 && !args[0].is_text()))
+      return Outcome::refused("takes the name of the take, or nothing");
+  } else if (!args.empty() && !released(args)) {
+    return Outcome::refused("takes no arguments");
+  }
+  Outcome outcome;
+  outcome.kind = Outcome::Kind::takes;
+  return outcome;
 }
 
 Outcome Dispatch::gone(const Message&) {

@@ -89,6 +89,7 @@ class Dispatch {
   Outcome get(const Message& message);
   Outcome gone(const Message& message);
   Outcome preset(const Message& message);
+  Outcome take(const Message& message);
 
   World& world_;
   Presets* presets_;

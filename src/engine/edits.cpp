@@ -31,7 +31,6 @@ bool Edits::Open::take(NodeId id, const Row& row) {
 void Edits::begin(const Origin& who, const World& world) {
   static const Row& paused = World::table().at("paused");
   who_ = who;
-  tick_ = world.tick();
   time_ = world.time();
   running_ = world.store().values(world.id(), paused)[0] == 0;
   structure_ = world.store().structure_version();
@@ -45,7 +44,7 @@ void Edits::heard(const Store& store, NodeId id, const Row& row, bool later) {
   if (now_ == nullptr) now_ = &open_for(id, row);
   Step& step = *now_->step;
   hand_.note_in(&step.hand);
-  step.tick = tick_;
+  step.pass = pass_;
   step.time = time_;
   step.later = step.later || later;
   if (!now_->take(id, row)) return;
@@ -59,8 +58,7 @@ void Edits::heard(const Store& store, NodeId id, const Row& row, bool later) {
 Edits::Open& Edits::open_for(NodeId id, const Row& row) {
   for (Open& open : open_) {
     if (open.step == nullptr || !(open.step->who == who_) || time_ - open.step->time > kGesture) continue;
-    const bool burst = running_ && open.step->tick == tick_;
-    if (!burst && !open.has(id, row)) continue;
+    if (open.step->pass != pass_ && !open.has(id, row)) continue;
     open.used = ++uses_;
     return open;
   }
@@ -86,6 +84,11 @@ bool Edits::differs(const Step& step, const Store& store) {
 }
 
 void Edits::end(const Store& store) {
+  pass_++;
+  settle(store);
+}
+
+void Edits::settle(const Store& store) {
   now_ = nullptr;
   hand_.note_in(nullptr);
   bool settled = false;
@@ -146,7 +149,7 @@ void Edits::exchange(Step& step, Store& store, std::size_t& changed, std::size_t
 }
 
 Result<void> Edits::exchange(Steps& from, Steps& to, World& world, const char* what) {
-  end(world.store());
+  settle(world.store());
   for (std::size_t i = from.size(); i > 0; i--) {
     Step& step = *from[i - 1];
     if (goes_on(step, world)) continue;

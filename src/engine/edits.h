@@ -25,7 +25,8 @@ class Edits {
   /// What `hand` remembers for a reset is undone with the values.
   explicit Edits(PerformerHand& hand) : hand_(hand) {}
 
-  /// What is set from here on is set by this hand: what comes at once, or in one tick while time runs, is one step.
+  /// What is set from here on is set by this hand: what comes in one tick, or at once while time stands still, is one
+  /// step.
   void begin(const Origin& who, const World& world);
   /// The row is about to be written, now or later on.
   void heard(const Store& store, NodeId id, const Row& row, bool later);
@@ -53,7 +54,7 @@ class Edits {
   };
   struct Step {
     Origin who;
-    std::uint64_t tick = 0;
+    std::uint64_t pass = 0;
     double time = 0;  // of the last that was set
     std::vector<Edit> edits;
     std::vector<double> values;  // that the rows do not have: before the step, or after it once it is undone
@@ -79,6 +80,7 @@ class Edits {
 
   Open& open_for(NodeId id, const Row& row);
   Open& open_new();
+  void settle(const Store& store);
   void trim();
   void drop(const Step* step);
   bool goes_on(const Step& step, const World& world) const;
@@ -94,7 +96,8 @@ class Edits {
   std::size_t values_ = 0;
   // of the hand that sets now
   Origin who_;
-  std::uint64_t tick_ = 0, structure_ = 0;
+  std::uint64_t pass_ = 0;  // counts ticks, and those in which time stands still
+  std::uint64_t structure_ = 0;
   double time_ = 0;
   bool running_ = false;
   Open* now_ = nullptr;

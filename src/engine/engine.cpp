@@ -43,18 +43,36 @@ Engine::Engine(EngineLink& link, EngineOptions options)
 }
 
 Engine::~Engine() {
+  end_take();
   link_.wake_engine = [] {};
 }
 
 Result<void> Engine::start() {
+  if (!options_.replay.empty()) return start_replay();
+  if (!options_.record.empty()) {
+    if (Result<void> recorded = start_record(); !recorded) return recorded;
+  }
   presets_.open(read_presets(options_.scene));
-  if (Result<void> ran = stage_->run(options_.scene, *this, options_.scene_options); !ran) {
+  const Result<void> started = start_show();
+  if (started) take_tick(false, true);
+  if (!started) drop_take();
+  return started;
+}
+
+Result<void> Engine::start_show() {
+  const TakenRun run = begin_run(TakeRun::Kind::start);
+  SceneOptions scene_options = options_.scene_options;
+  scene_options.sources = run.sources;
+  if (run.fails) return Error{"the scene did not run when the take was recorded either"};
+  if (Result<void> ran = stage_->run(options_.scene, *this, scene_options); !ran) {
     stage_ = std::make_unique<Stage>(link_, presets_, edits_);
-    reload_.begin(*stage_, options_.scene_options);
+    reload_.begin(*stage_, options_.scene_options, options_.scene);
     presets_.scene_says(reload_.script());
     return ran;
   }
-  reload_.begin(*stage_, options_.scene_options);
+  if (stage_->scene != nullptr) stage_->scene->count_calls(calls_);
+  run_was_good(run, *stage_, presets_.list(), presets_.file());
+  reload_.begin(*stage_, options_.scene_options, options_.scene);
   presets_.scene_says(reload_.script());
   World& world = stage_->world;
   if (options_.scene_options.seed) {
@@ -70,23 +88,29 @@ Result<void> Engine::start() {
 
 // what the hand has set may want another run before the scene's on_start sees it
 void Engine::begin_show() {
-  if (reload_.take_rerun(*stage_)) reload_now(true);
+  if (reload_.take_rerun(*stage_)) run_now(TakeRun::Kind::rerun, true);
   stage_->world.settle();
   if (stage_->scene != nullptr) stage_->scene->start();
 }
 
-void Engine::reset() {
+bool Engine::reset() {
+  const TakenRun run = begin_run(TakeRun::Kind::reset);
   // a scene that fails now leaves the show as it is
   auto fresh = std::make_unique<Stage>(link_, presets_, edits_);
   SceneOptions scene_options = options_.scene_options;
   const World& before = stage_->world;
   if (before.seed() != scene_seed_) scene_options.seed = before.seed();  // the performer's
-  if (const Result<void> ran = fresh->run(options_.scene, *this, scene_options); !ran) {
+  SceneOptions run_options = scene_options;
+  run_options.sources = run.sources;
+  const Result<void> ran = run.fails ? Result<void>(Error{"as it had when the take was recorded"})
+                                     : fresh->run(options_.scene, *this, run_options);
+  if (!ran) {
     faults_++;
     log_error("reset: the scene plays on as it was, its file has an error: {}", ran.error());
-    return;
+    return false;
   }
-  reload_.begin(*fresh, scene_options);
+  run_was_good(run, *fresh);
+  reload_.begin(*fresh, scene_options, options_.scene);
   presets_.scene_says(reload_.script());
   if (scene_options.seed) keep_state(*fresh, "seed");
   take_stage(std::move(fresh));
@@ -94,6 +118,7 @@ void Engine::reset() {
   replay_hand();
   begin_show();
   send_transport();
+  return true;
 }
 
 // what belongs to the hour, not to the scene
@@ -107,6 +132,7 @@ std::unique_ptr<Stage> Engine::take_stage(std::unique_ptr<Stage> fresh) {
   faults_ += stage_->world.health_events();
   std::swap(stage_, fresh);
   edits_.follow(fresh->store, stage_->store);
+  if (stage_->scene != nullptr) stage_->scene->count_calls(calls_);
   images_.forget_store();
   presets_.forget_store();
   return fresh;
@@ -139,10 +165,13 @@ void Engine::replay_hand() {
 }
 
 void Engine::run() {
-  requests_.open();
+  if (!replays()) requests_.open();
   clock_.restart(Clock::Time::clock::now());
   while (!stop_.load(std::memory_order_relaxed) && !finished()) {
-    if (options_.fast && !stage_->transport.paused()) {
+    // while time stood still a replay does not wait
+    const bool at_once =
+        replays() ? options_.fast || !player_->steps_next() : options_.fast && !stage_->transport.paused();
+    if (at_once) {
       clock_.measure(Clock::Time::clock::now(), stage_->world.timestep());
       pass(true);
     } else if (wait_for_tick()) {
@@ -153,6 +182,7 @@ void Engine::run() {
     }
   }
   requests_.close();
+  end_take();
 }
 
 // false: the tick is not due yet, but somebody may wait for an answer
@@ -179,6 +209,7 @@ void Engine::pace() {
 }
 
 bool Engine::finished() const {
+  if (replays() && player_->over()) return true;
   if (options_.strict && faults() > 0) return true;
   if (options_.ticks && stage_->world.tick() >= *options_.ticks) return true;
   return options_.duration && stage_->world.time() >= *options_.duration - 1e-9;
@@ -194,7 +225,15 @@ void Engine::stop() {
 
 void Engine::pass(bool may_step) {
   Stopwatch watch;
-  requests_.serve();
+  if (replays()) {
+    if (!player_->next()) return;
+    may_step = player_->tick().running;
+    calls_.begin_tick(player_->current_scripts() ? std::vector<StoppedCall>() : player_->tick().stopped);
+    replay_runs();
+  } else {
+    calls_.begin_tick();
+    requests_.serve();
+  }
   rerun();
   drain();
   times_.commands = watch.lap();
@@ -222,7 +261,13 @@ void Engine::pass(bool may_step) {
   }
   watch.lap();
 
-  if (stage.world.take_reset_request()) reset();
+  if (take_wanted_) {
+    begin_take();
+  } else {
+    if (stage.world.take_reset_request()) reset();
+    take_tick(running);
+  }
+  if (std::exchange(take_ends_, false)) end_take();
   publish();
   make_image(asks_);
   if (was_paused_ != stage_->transport.paused()) send_transport();
@@ -248,13 +293,14 @@ void Engine::make_image(std::uint64_t asks) {
 void Engine::drain() {
   stage_->dispatch.begin_tick();
   Hands hands(stage_->world, presets_, edits_, notes_);
+  if (replays()) return replay_messages(hands);
   bool taken = false;
   for (int work = kTickWork; work > 0;) {
     if (next_command_ < commands_.size()) {
       Command& command = commands_[next_command_++];
       hands.begin(command.origin);
       for (Message& message : command.messages) work -= execute(message, command.origin);
-      if (command.evaluate != nullptr) evaluate(*command.evaluate);
+      if (command.evaluate != nullptr) evaluate(*command.evaluate, command.origin);
       continue;
     }
     asks_ = asks_of_batch_;
@@ -266,13 +312,14 @@ void Engine::drain() {
 }
 
 // what a person mistypes is answered to them and is no fault of the show
-void Engine::evaluate(const Evaluate& wish) {
+void Engine::evaluate(const Evaluate& wish, const Origin& origin) {
   Evaluation said{Evaluation::Kind::error, "there is no scene to evaluate in"};
   const std::uint64_t before = log_newest();
   if (wish.text.size() > kMostEvaluated) {
     said.text = fmt::format("a text for the scene has up to {} bytes, this one {}", kMostEvaluated, wish.text.size());
   } else if (stage_->scene != nullptr) {
     Scene& scene = *stage_->scene;
+    if (recorder_ != nullptr && wish.wish == Evaluate::Wish::run) recorder_->evaluation(wish.text, origin);
     said = wish.wish == Evaluate::Wish::run ? scene.evaluate(wish.text) : scene.complete(wish.text);
   }
   said.log_before = before;
@@ -281,7 +328,9 @@ void Engine::evaluate(const Evaluate& wish) {
 }
 
 int Engine::execute(Message& message, const Origin& origin) {
+  if (recorder_ != nullptr) recorder_->message(message, origin);
   Outcome outcome = stage_->dispatch.execute(message);
+  if (outcome.kind == Outcome::Kind::takes) outcome = ask_take(message);
   if (outcome.kind == Outcome::Kind::scenes && !link_.ask_scenes) outcome.kind = Outcome::Kind::refused;
   if (outcome.clamped != nullptr) {
     link_.counters.clamped.fetch_add(1, std::memory_order_relaxed);
@@ -328,6 +377,7 @@ void Engine::call_handlers() {
     refuse(heard.message.address, heard.origin, heard.error);
   }
   heard_.clear();
+  answers_taken_ = false;
 }
 
 void Engine::refuse(std::string_view address, const Origin& origin, std::string_view error) {
@@ -365,7 +415,11 @@ void Engine::send_contacts() {
   }
 }
 
-void Engine::push_out(Outgoing out) { link_.push_out(std::move(out)); }
+void Engine::push_out(Outgoing out) {
+  const bool answer = out.to == Outgoing::To::sender || out.to == Outgoing::To::error;
+  if (answer && answers_taken_) return;
+  link_.push_out(std::move(out));
+}
 
 void Engine::send_transport() {
   was_paused_ = stage_->transport.paused();

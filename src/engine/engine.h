@@ -20,6 +20,9 @@
 #include "engine/reload.h"
 #include "engine/requests.h"
 #include "engine/stage.h"
+#include "engine/take_player.h"
+#include "engine/take_recorder.h"
+#include "script/call_ledger.h"
 
 namespace limber {
 
@@ -32,6 +35,9 @@ struct EngineOptions {
   bool strict = false;                 ///< Ends at the first fault.
   bool print = true;                   ///< Scripts' print goes to stdout; false: to stderr, where stdout is an answer.
   std::string preset;                  ///< `--preset`: recalled before the first tick.
+  std::string record;                  ///< A take goes there, from the start on.
+  std::string replay;                  ///< This take is played; it has the scene and all that came in.
+  bool current_scripts = false;        ///< A replay reads the scene from the disk, as it is now.
   std::vector<Message> sets;           ///< `--set`: the performer's hand before the first tick, after the preset.
 };
 
@@ -76,7 +82,12 @@ class Engine : private ScriptHost {
   const PhaseTimes& times() const { return times_; }
   const Presets& presets() const { return presets_; }
   /// Waits until what presets have to write is on the disk. [any but sim]
-  void finish_saving() { presets_.finish_saving(); }
+  void finish_saving();
+  /// Ends the take that is recorded, if one is. [sim]
+  void end_take();
+  /// Whether a take is replayed, and what came of it so far.
+  bool replays() const { return player_ != nullptr; }
+  TakeVerdict verdict() const { return player_->verdict(); }
   /// World, scene and generators. [sim]
   std::uint64_t state_hash() const;
   /// Script errors and refused values so far, health events: what `--strict` asks for. [sim]
@@ -96,7 +107,8 @@ class Engine : private ScriptHost {
 
   /// A tick; or, when `may_step` is false, only what happens while time stands still.
   void pass(bool may_step);
-  void reset();
+  bool reset();
+  Result<void> start_show();
   void keep_state(Stage& fresh, std::string_view name) const;
   /// The stage becomes the show; the answer is the one before.
   std::unique_ptr<Stage> take_stage(std::unique_ptr<Stage> fresh);
@@ -105,13 +117,38 @@ class Engine : private ScriptHost {
   Result<void> first_hand();
   void carry_out_wishes();
   Reload::End take(Draft& draft);
+  Reload::End run_now(TakeRun::Kind kind, bool again);
+  void play_scene(const std::string& file, std::unique_ptr<Stage>& fresh, Presets::Book& book);
+
+  /// A run of the scene, in a take.
+  struct TakenRun {
+    std::size_t place = 0;                   // where it is recorded
+    const TakeRun* told = nullptr;           // as the take that is replayed has it
+    std::shared_ptr<const Sources> sources;  // what it is to read instead of the disk
+    bool fails = false;                      // it failed then
+  };
+  TakenRun begin_run(TakeRun::Kind kind, bool again = false, const std::string& scene = "");
+  void run_was_good(const TakenRun& run, const Stage& stage, std::optional<PresetList> presets = {},
+                    const std::string& preset_file = "");
+  Result<void> start_record();
+  Result<void> start_replay();
+  Result<void> replay_beginning();
+  TakeBegin take_begin(bool reset) const;
+  void replay_runs();
+  void replay_run(const TakeRun& run);
+  void replay_messages(Hands& hands);
+  Outcome ask_take(const Message& message);
+  void begin_take();
+  void drop_take();
+  void take_tick(bool running, bool begins = false);
+  std::function<void(const std::string&)> say_take_failed();
   void begin_show();
   void rerun();
   bool between_ticks(const std::function<void()>& work);
   void drain();
   /// What the message cost of kTickWork.
   int execute(Message& message, const Origin& origin);
-  void evaluate(const Evaluate& wish);
+  void evaluate(const Evaluate& wish, const Origin& origin);
   void refuse(std::string_view address, const Origin& origin, std::string_view error);
   void call_handlers();
   void publish();
@@ -136,6 +173,14 @@ class Engine : private ScriptHost {
   Reload reload_;
   Requests requests_;
   ImageMaker images_{link_.images};
+  CallLedger calls_;
+  std::unique_ptr<TakeRecorder> recorder_;
+  std::unique_ptr<TakePlayer> player_;
+  std::vector<std::unique_ptr<TakeWriter>> written_;  // takes that have ended, and may still be written
+  std::optional<std::string> take_wanted_;            // the file of a take that begins at the tick's end
+  bool take_ends_ = false;
+  bool answers_taken_ = false;         // what is sent now answers a message of the take that is replayed
+  std::optional<DraftOrder> ordered_;  // of the take that is replayed
   Clock clock_;
   PhaseTimes times_;
 

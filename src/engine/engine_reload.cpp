@@ -19,22 +19,40 @@ void Engine::reload(bool again) {
   constexpr int kTries = 3;
   for (int i = 0; i < kTries; i++) {
     DraftOrder order;
-    if (!between_ticks([&] { order = reload_.order(*stage_, again); })) return;
+    const auto copy_order = [&] {
+      begin_run(TakeRun::Kind::order, again);
+      order = reload_.order(*stage_, again);
+    };
+    if (!between_ticks(copy_order)) return;
     Draft draft(std::move(order), *this);
     Reload::End end = Reload::End::outdated;
-    if (!between_ticks([&] { end = take(draft); }) || end != Reload::End::outdated) return;
+    const auto apply_draft = [&] {
+      const TakenRun run = begin_run(TakeRun::Kind::take);
+      end = take(draft);
+      if (end == Reload::End::applied) run_was_good(run, *stage_);
+    };
+    if (!between_ticks(apply_draft) || end != Reload::End::outdated) return;
   }
   // resets come so fast that each draft is late: this one stretches a tick
   between_ticks([&] { reload_now(again); });
 }
 
-Reload::End Engine::reload_now(bool again) {
-  Draft draft(reload_.order(*stage_, again), *this);
-  return take(draft);
+Reload::End Engine::reload_now(bool again) { return run_now(TakeRun::Kind::reload, again); }
+
+Reload::End Engine::run_now(TakeRun::Kind kind, bool again) {
+  const TakenRun run = begin_run(kind, again);
+  DraftOrder order = reload_.order(*stage_, again);
+  if (run.fails) return Reload::End::failed;
+  order.options.sources = run.sources;
+  Draft draft(std::move(order), *this);
+  const Reload::End end = take(draft);
+  if (end == Reload::End::applied) run_was_good(run, *stage_);
+  return end;
 }
 
 Reload::End Engine::take(Draft& draft) {
   const bool is_start = stage_->scene == nullptr;
+  draft.scene()->count_calls(calls_);
   const Reload::End end = [&] {
     const Hands hands(stage_->world, presets_, edits_, notes_);
     return reload_.take(draft, *stage_);
@@ -56,29 +74,39 @@ Result<void> Engine::change_scene(const std::string& file) {
   if (!ran) return ran;
   Presets::Book book = read_presets(file);
   const bool done = between_ticks([&] {
-    options_.scene = file;
-    hand_.clear();
-    edits_.clear();
-    reload_.begin(*fresh, options_.scene_options, file);
-    presets_.scene_says(reload_.script());
-    book = presets_.open(std::move(book));
-    if (stage_->scene != nullptr) stage_->scene->disarm();
-    fresh = take_stage(std::move(fresh));
-    stage_->begin(*this);
-    scene_seed_ = stage_->world.seed();
-    begin_show();
-    send_transport();
+    const TakenRun run = begin_run(TakeRun::Kind::scene, false, file);
+    run_was_good(run, *fresh, book.list, book.file);
+    play_scene(file, fresh, book);
   });
   if (!done) return Error{"the show has ended"};
   return ran;  // the stage and the presets before go here, beside the show
 }
 
+void Engine::play_scene(const std::string& file, std::unique_ptr<Stage>& fresh, Presets::Book& book) {
+  options_.scene = file;
+  hand_.clear();
+  edits_.clear();
+  reload_.begin(*fresh, options_.scene_options, file);
+  presets_.scene_says(reload_.script());
+  book = presets_.open(std::move(book));
+  if (stage_->scene != nullptr) stage_->scene->disarm();
+  fresh = take_stage(std::move(fresh));
+  stage_->begin(*this);
+  scene_seed_ = stage_->world.seed();
+  begin_show();
+  send_transport();
+}
+
 void Engine::rerun() {
   if (!reload_.take_rerun(*stage_)) return;
-  if (link_.rerun_scene && !options_.fast) {
+  const bool beside = link_.rerun_scene && !options_.fast;
+  if (replays() && !player_->current_scripts()) {
+    // where it was run beside the show, the take has that by itself
+    if (player_->comes(TakeRun::Kind::rerun)) run_now(TakeRun::Kind::rerun, true);
+  } else if (beside) {
     link_.rerun_scene();
   } else {
-    reload_now(true);
+    run_now(TakeRun::Kind::rerun, true);
   }
 }
 

@@ -15,6 +15,7 @@ struct Outcome {
     answered,  ///< `answers` go to the sender.
     refused,   ///< `error` says why; nothing was changed.
     unknown,   ///< No such address of Limber's; `error` names near ones.
+    takes,     ///< It is about takes: for the engine, at the tick's end.
     scenes,    ///< It is about the show's scenes: for who may read files (EngineLink::ask_scenes), and who answers.
   };
   Kind kind = Kind::applied;

@@ -46,6 +46,9 @@ class Presets {
   /// From now on it is another store; running morphs end.
   void forget_store();
 
+  /// The one name of the file that they are kept in; empty: they are in none.
+  const std::string& file() const { return file_; }
+
   /// /preset/store, recall, morph, delete, /list/presets, by its last word in small letters.
   Outcome execute(std::string_view what, const Message& message, World& world);
   /// Whether such a message would be taken, were those of `before` done.

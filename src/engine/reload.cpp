@@ -14,7 +14,8 @@ namespace limber {
 Reload::Reload(std::string file, ScriptHost& host, PerformerHand& hand)
     : file_(std::move(file)), host_(host), hand_(hand) {}
 
-void Reload::begin(const Stage& stage, const SceneOptions& options) {
+void Reload::begin(const Stage& stage, const SceneOptions& options, const std::string& file) {
+  file_ = file;
   options_ = options;
   description_ = std::make_shared<const Description>(describe(stage.world));
   things_ = things_of(stage.world);
@@ -24,11 +25,6 @@ void Reload::begin(const Stage& stage, const SceneOptions& options) {
   if (stage.scene != nullptr) stage.scene->rerun_values(ran_with_);
   keep_files({});
   if (stage.scene != nullptr) say_mended();
-}
-
-void Reload::begin(const Stage& stage, const SceneOptions& options, const std::string& file) {
-  file_ = file;
-  begin(stage, options);
 }
 
 DraftOrder Reload::order(const Stage& stage, bool again) {

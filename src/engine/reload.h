@@ -25,9 +25,8 @@ class Reload {
 
   Reload(std::string file, ScriptHost& host, PerformerHand& hand);
 
-  /// A stage whose scene has just run well from its start, or has none: nothing else was done to it. [sim]
-  void begin(const Stage& stage, const SceneOptions& options);
-  /// The same of another scene's file. [sim]
+  /// A stage whose scene, of that file, has just run well from its start, or has none: nothing else was done to it.
+  /// [sim]
   void begin(const Stage& stage, const SceneOptions& options, const std::string& file);
   /// What a draft is made from now. `again`: of what the last good run has read, not of the disk. [sim]
   DraftOrder order(const Stage& stage, bool again);

@@ -2,11 +2,13 @@
 // parts, joints and motors from it, any number of times, and shares its geometry.
 #pragma once
 
+#include <cstdint>
 #include <limits>
 #include <memory>
 #include <optional>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "base/vec.h"
@@ -56,8 +58,9 @@ struct MeshModel {
   double hull_error = 0;            ///< Distance of the farthest vertex left out from the reduced hull, metres.
   /// What the whole hull is, when that is a box, sphere or capsule; in the mesh's frame.
   std::optional<PlacedShape> primitive;
-  bool closed = false;  ///< Watertight: its own volume counts, else the hull's.
-  Inertial solid;       ///< At density 1 kg/m³, so that `mass` is the volume in m³.
+  std::uint64_t content = 0;  ///< hash_bytes of the file.
+  bool closed = false;        ///< Watertight: its own volume counts, else the hull's.
+  Inertial solid;             ///< At density 1 kg/m³, so that `mass` is the volume in m³.
 };
 
 /// One link of the file that moves on its own: fixed children are already merged in, unless kept.
@@ -148,7 +151,9 @@ struct BodyModel {
   std::vector<FileLink> file_links;
   std::vector<FileJoint> file_joints;
   std::vector<Problem> problems;
+  std::uint64_t content = 0;  ///< Over the options and all that the files hold: models of one content are the same.
   std::vector<std::string> files;  ///< Every file that was read for it: the URDF and its meshes.
+  std::vector<std::pair<std::string, std::string>> meshes_found;  ///< As the URDF names them, and their files.
 };
 
 }  // namespace limber

@@ -99,16 +99,33 @@ Result<std::string> find_mesh(const std::string& uri, const std::string& folder,
                   printable(uri), looked)};
 }
 
+Result<std::string> MeshLibrary::find(const std::string& uri, const std::string& folder,
+                                      const std::vector<std::string>& package_paths) const {
+  if (instead_ == nullptr) return find_mesh(uri, folder, package_paths);
+  const auto known = instead_->found.find(FileSet::mesh_key(folder, uri));
+  if (known == instead_->found.end())
+    return Error{fmt::format("'{}' is not among the files that were kept. It was not there then.", printable(uri))};
+  return known->second;
+}
+
+Result<std::shared_ptr<const MeshModel>> MeshLibrary::load_kept(const std::string& path, const Vec3& scale) const {
+  const std::string* const bytes = instead_->content(path);
+  if (bytes == nullptr) return Error{fmt::format("{}: is not among the files that were kept.", printable(path))};
+  const Result<MeshFormat> format = mesh_format_of(path);
+  if (!format) return Error{fmt::format("{}: {}", printable(path), format.error())};
+  return mesh_from_bytes(*bytes, *format, scale, fs::path(path).stem().string());
+}
+
 Result<std::shared_ptr<const MeshModel>> MeshLibrary::load(const std::string& path, const Vec3& scale) {
   const std::string key = fmt::format("{}|{:a}|{:a}|{:a}", path, scale.x, scale.y, scale.z);
   {
     const std::lock_guard lock(mutex_);
     const auto found = meshes_.find(key);
-    if (found != meshes_.end() && found->second.stamp.holds(path)) return found->second.mesh;
+    if (found != meshes_.end() && (instead_ != nullptr || found->second.stamp.holds(path))) return found->second.mesh;
   }
   // loaded without the lock: two threads may do it twice, and the first one's is kept
-  const FileStamp stamp(path);
-  auto mesh = load_mesh(path, scale);
+  const FileStamp stamp = instead_ == nullptr ? FileStamp(path) : FileStamp();
+  auto mesh = instead_ == nullptr ? load_mesh(path, scale) : load_kept(path, scale);
   if (!mesh) return mesh;
   const std::lock_guard lock(mutex_);
   Entry& entry = meshes_[key];

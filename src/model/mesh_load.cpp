@@ -12,6 +12,7 @@
 
 #include <fmt/format.h>
 
+#include "base/random.h"
 #include "base/text.h"
 #include "model/hull.h"
 #include "model/mass_properties.h"
@@ -113,6 +114,7 @@ Result<std::shared_ptr<const MeshModel>> mesh_from_bytes(std::string_view bytes,
     }
     auto mesh = std::make_shared<MeshModel>();
     mesh->name = name;
+    mesh->content = hash_bytes(bytes);
     weld(*soup, *mesh);
     if (mesh->triangles.empty()) return Error{"holds no triangles. Export it again, as a surface."};
     if (scale.x * scale.y * scale.z < 0) flip(mesh->triangles);

@@ -6,15 +6,9 @@
 
 #include <fmt/format.h>
 
-namespace limber {
+#include "base/text.h"
 
-std::string options_key(const ImportOptions& options) {
-  std::string key =
-      fmt::format("|{}|{}", options.fixed_base ? (*options.fixed_base ? "fixed" : "free") : "", options.keep_fixed);
-  for (const auto& [name, value] : options.pose) key += fmt::format("|{}:{}={:a}", name.size(), name, value);
-  for (const std::string& folder : options.package_paths) key += fmt::format("|{}:{}", folder.size(), folder);
-  return key;
-}
+namespace limber {
 
 std::string model_key(const std::string& path, const ImportOptions& options) {
   std::error_code fault;
@@ -22,11 +16,19 @@ std::string model_key(const std::string& path, const ImportOptions& options) {
   return (fault ? path : whole.string()) + options_key(options);
 }
 
-bool ModelLibrary::is_fresh(Entry& entry) {
+bool ModelLibrary::is_fresh(Entry& entry) const {
+  if (instead_ != nullptr) return true;
   for (std::size_t i = 0; i < entry.stamps.size(); ++i) {
     if (!entry.stamps[i].holds(entry.model->files[i])) return false;
   }
   return true;
+}
+
+Result<std::shared_ptr<const BodyModel>> ModelLibrary::load_kept(const std::string& path,
+                                                                 const ImportOptions& options) {
+  const std::string* const bytes = instead_->content(path);
+  if (bytes == nullptr) return Error{fmt::format("{}: is not among the files that were kept.", printable(path))};
+  return import_urdf_text(*bytes, path, options, meshes_);
 }
 
 Result<std::shared_ptr<const BodyModel>> ModelLibrary::load_urdf(const std::string& path,
@@ -39,12 +41,16 @@ Result<std::shared_ptr<const BodyModel>> ModelLibrary::load_urdf(const std::stri
   }
   // imported without the lock, which other threads may need meanwhile; the URDF's stamp is taken first, so that a
   // change during the import is seen the next time
-  const FileStamp before(path);
-  Result<std::shared_ptr<const BodyModel>> model = import_urdf(path, options, meshes_);
+  const bool disk = instead_ == nullptr;
+  const FileStamp before = disk ? FileStamp(path) : FileStamp();
+  Result<std::shared_ptr<const BodyModel>> model =
+      disk ? import_urdf(path, options, meshes_) : load_kept(path, options);
   if (!model) return model;
   Entry entry{*model, {}};
-  for (const std::string& file : (*model)->files) entry.stamps.emplace_back(file);
-  entry.stamps.front() = before;
+  if (disk) {
+    for (const std::string& file : (*model)->files) entry.stamps.emplace_back(file);
+    entry.stamps.front() = before;
+  }
   const std::lock_guard lock(mutex_);
   Entry& kept = models_[key];
   // two threads may have imported the same file: the first one's model stays

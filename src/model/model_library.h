@@ -15,8 +15,6 @@
 
 namespace limber {
 
-/// Everything by which two imports of a file differ, in one text. [any]
-std::string options_key(const ImportOptions& options);
 /// Everything that makes two imports the same, as one text. [any]
 std::string model_key(const std::string& path, const ImportOptions& options);
 
@@ -24,6 +22,9 @@ std::string model_key(const std::string& path, const ImportOptions& options);
 /// changed on disk; who holds the old one keeps it. [any]
 class ModelLibrary {
  public:
+  /// `instead`: what is read in place of the disk.
+  explicit ModelLibrary(std::shared_ptr<const FileSet> instead = nullptr) : instead_(instead), meshes_(instead) {}
+
   Result<std::shared_ptr<const BodyModel>> load_urdf(const std::string& path, const ImportOptions& options = {});
   /// The meshes that the models share.
   MeshLibrary& meshes() { return meshes_; }
@@ -34,8 +35,10 @@ class ModelLibrary {
     std::vector<FileStamp> stamps;  ///< Of BodyModel::files, in order.
   };
 
-  static bool is_fresh(Entry& entry);
+  bool is_fresh(Entry& entry) const;
+  Result<std::shared_ptr<const BodyModel>> load_kept(const std::string& path, const ImportOptions& options);
 
+  std::shared_ptr<const FileSet> instead_;
   std::mutex mutex_;
   MeshLibrary meshes_;
   std::map<std::string, Entry> models_;

@@ -9,6 +9,7 @@
 
 #include <fmt/format.h>
 
+#include "base/random.h"
 #include "base/text.h"
 #include "model/mesh_load.h"
 #include "model/problems.h"
@@ -38,6 +39,14 @@ class MeshStep {
     }
   }
   const std::set<std::string>& files() const { return files_; }
+  /// Names and files.
+  const std::map<std::string, std::string>& named() const { return named_; }
+  /// Over which meshes there are, and what they hold.
+  std::uint64_t content(std::uint64_t start) const {
+    for (const auto& [key, mesh] : found_)
+      start = hash_bytes(fmt::format("{}|{:x}|", key, mesh ? (*mesh)->content : 0), start);
+    return start;
+  }
 
  private:
   using Found = Result<std::shared_ptr<const MeshModel>>;
@@ -70,9 +79,10 @@ class MeshStep {
     if (const Result<MeshFormat> format = mesh_format_of(uri); !format) {
       return Error{fmt::format("'{}' {}", printable(uri), format.error())};
     }
-    const Result<std::string> file = find_mesh(uri, folder_, options_.package_paths);
+    const Result<std::string> file = meshes_.find(uri, folder_, options_.package_paths);
     if (!file) return Error{file.error()};
     files_.insert(*file);
+    named_[uri] = *file;
     return meshes_.load(*file, scale);
   }
 
@@ -82,6 +92,7 @@ class MeshStep {
   Problems& problems_;
   std::map<std::string, Found> found_;
   std::set<std::string> files_;
+  std::map<std::string, std::string> named_;
 };
 
 Result<std::shared_ptr<const BodyModel>> import_bytes(std::string_view bytes, const std::string& path,
@@ -108,10 +119,20 @@ Result<std::shared_ptr<const BodyModel>> import_bytes(std::string_view bytes, co
   model->problems = problems.take();
   model->files.assign(1, path);
   model->files.insert(model->files.end(), step.files().begin(), step.files().end());
+  model->meshes_found.assign(step.named().begin(), step.named().end());
+  model->content = step.content(hash_bytes(bytes, hash_bytes(options_key(options))));
   return std::shared_ptr<const BodyModel>(std::move(model));
 }
 
 }  // namespace
+
+std::string options_key(const ImportOptions& options) {
+  std::string key =
+      fmt::format("|{}|{}", options.fixed_base ? (*options.fixed_base ? "fixed" : "free") : "", options.keep_fixed);
+  for (const auto& [name, value] : options.pose) key += fmt::format("|{}:{}={:a}", name.size(), name, value);
+  for (const std::string& folder : options.package_paths) key += fmt::format("|{}:{}", folder.size(), folder);
+  return key;
+}
 
 Result<std::shared_ptr<const BodyModel>> import_urdf_text(std::string_view text, const std::string& path,
                                                           const ImportOptions& options, MeshLibrary& meshes) {

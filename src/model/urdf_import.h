@@ -22,6 +22,8 @@ struct ImportOptions {
 
   bool operator==(const ImportOptions&) const = default;
 };
+/// Everything by which two imports of a file differ, in one text. [any]
+std::string options_key(const ImportOptions& options);
 
 /// The body that a URDF file describes. What is wrong in the file is left out or repaired and listed in
 /// `BodyModel::problems`; the error ("file:line: what. Cure.") comes only when there is no body in it. Bounded in time

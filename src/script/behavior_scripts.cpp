@@ -135,8 +135,11 @@ void BehaviorScripts::step_all(StepRow& row, double dt) {
   BehaviorFault fault = inside([&] { return vm_->step_behaviors(dt, row.stepping); });
   row_ = outer;
   if (fault.text.empty()) return;
-  // without a Vm nobody came to step
-  if (row.next == 0) row.next = 1;
+  // without a Vm nobody came to step, nor in a call that a replay does not make
+  if (row.next == 0) {
+    while (row.changed && row.next + 1 < row.all.size() && !row.all[row.next]->runs()) row.next++;
+    row.next++;
+  }
   row.changed = true;
   static_cast<LuaBehavior&>(*row.all[row.next - 1]).fail(std::move(fault));
 }

@@ -27,6 +27,7 @@
 namespace limber {
 
 class BehaviorScripts;
+class CallLedger;
 class Guard;
 
 struct ScriptContext {
@@ -88,7 +89,8 @@ struct ScriptContext {
   std::shared_ptr<BehaviorScripts> behaviors;  ///< Shared with the behaviours that live in the world.
 
   // guarded calls: what one asks of the outside waits until it has ended well
-  Guard* guard = nullptr;  ///< Of the scene's Vm.
+  Guard* guard = nullptr;       ///< Of the scene's Vm.
+  CallLedger* calls = nullptr;  ///< Who counts them, where somebody does.
   enum class Way : std::uint8_t { all, sender, direct };
   struct Held {
     Way way;

@@ -16,6 +16,7 @@
 #include <lua.hpp>
 
 #include "base/check.h"
+#include "script/call_ledger.h"
 #include "script/context.h"
 
 namespace limber {
@@ -101,6 +102,7 @@ bool Guard::call(int arguments, int results, Kind kind) {
     fault_ = {"", 0, "a guarded call inside another", false};
     return false;
   }
+  if (kind == Kind::call && context_.calls != nullptr && context_.calls->forbids_next()) return skip_call(arguments);
   // the function once more, for faults that come without a place, and the message handler
   const int function = lua_gettop(L) - arguments;
   lua_pushvalue(L, function);
@@ -120,9 +122,23 @@ bool Guard::call(int arguments, int results, Kind kind) {
     lua_rawgeti(L, LUA_REGISTRYINDEX, failed_);
     lua_pcall(L, 0, 0, 0);
     lua_settop(L, function - 1);
+    if (fault_.stopped && kind == Kind::call && context_.calls != nullptr)
+      context_.calls->note_stop(fault_.file, fault_.line, fault_.text);
   }
   if (kind == Kind::call) context_.end_call(good);
   return good;
+}
+
+// a call that was stopped when the take was recorded: it fails as it did then
+bool Guard::skip_call(int arguments) {
+  context_.begin_call();
+  const StoppedCall& stop = context_.calls->skip();
+  fault_ = {stop.file, stop.line, stop.text, true};
+  lua_settop(state_, lua_gettop(state_) - arguments - 1);
+  lua_rawgeti(state_, LUA_REGISTRYINDEX, failed_);
+  lua_pcall(state_, 0, 0, 0);
+  context_.end_call(false);
+  return false;
 }
 
 void Guard::begin(Kind kind) {
@@ -131,7 +147,10 @@ void Guard::begin(Kind kind) {
   fired_ = false;
   hooked_ = false;
   reason_ = Reason::none;
-  if (kind == Kind::call) context_.begin_call();
+  if (kind == Kind::call) {
+    if (context_.calls != nullptr) context_.calls->count();
+    context_.begin_call();
+  }
   memory_.begin_call();
   running_here = this;
   const double budget = kind == Kind::call ? limits_.call_ms : limits_.run_ms;
@@ -139,9 +158,11 @@ void Guard::begin(Kind kind) {
 }
 
 bool Guard::next_call(bool& changed) {
+  if (context_.calls != nullptr && context_.calls->forbids_next()) return false;
   // from here on nobody stops the call before: what has asked until now is seen
   watch_.next();
   if (reason_ != Reason::none || memory_.used() > memory_.cap() / 2) return false;
+  if (context_.calls != nullptr) context_.calls->count();
   if (context_.next_call()) changed = true;
   memory_.begin_call();
   return true;

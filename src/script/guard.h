@@ -63,8 +63,8 @@ class Guard {
 
   // what the prelude asks in the middle of a call
   bool stopped() const { return fired_; }
-  /// Whether native code that works on for long should end: the call is going to be stopped.
-  bool stop_asked() { return reason_ != Reason::none || watch_.stop_asked(); }
+  /// Whether native code that works on for long should end: the call that runs is going to be stopped.
+  bool stop_asked() { return running_ && (reason_ != Reason::none || watch_.stop_asked()); }
   std::string_view stop_file() const { return stop_file_; }
   int stop_line() const { return stop_line_; }
   std::string stop_text() const;
@@ -78,6 +78,7 @@ class Guard {
   void end();
   void stop(Reason reason);
   void heal();
+  bool skip_call(int arguments);
   void take_fault(int status, int function);
   void place_at_function(int function);
   void note_place(lua_State* state);

@@ -17,6 +17,7 @@ Scene::~Scene() = default;
 Result<void> Scene::run(const std::string& file, const RunInputs* beside) {
   ScriptContext& c = *context_;
   if (beside != nullptr && beside->sources != nullptr) c.sources = std::make_shared<Sources>(beside->sources);
+  if (c.options.sources != nullptr) c.sources = std::make_shared<Sources>(c.options.sources);
   c.files = ScriptFiles(file, c.options.data_dir);
   fault_ = {c.files.shown(file), 0};
   const Result<std::string> text = c.sources->text(file);
@@ -43,6 +44,8 @@ Result<void> Scene::run(const std::string& file, const RunInputs* beside) {
 }
 
 std::shared_ptr<const Sources> Scene::sources() const { return context_->sources; }
+
+void Scene::count_calls(CallLedger& calls) { context_->calls = &calls; }
 
 void Scene::start() { vm_->start(); }
 

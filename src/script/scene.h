@@ -20,6 +20,7 @@ namespace limber {
 
 class Sources;
 class World;
+class CallLedger;
 class Vm;
 struct ScriptContext;
 
@@ -46,6 +47,8 @@ class Scene {
   const ScriptPlace& fault() const { return fault_; }
   /// What the run has read so far.
   std::shared_ptr<const Sources> sources() const;
+  /// From here on guarded calls are counted there; it outlives the scene. [sim]
+  void count_calls(CallLedger& calls);
   /// The callbacks of on_start; the world is settled before.
   void start();
   /// Timers, contacts of the tick before, on_step with `dt` seconds, each in the order of registration.

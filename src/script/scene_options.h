@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -10,11 +11,14 @@
 
 namespace limber {
 
+class Sources;
+
 struct SceneOptions {
   std::string data_dir;                    ///< Installed data, looked into last; empty: none.
   std::vector<std::string> package_paths;  ///< Where package:// of URDF files is looked for.
   std::optional<std::uint64_t> seed;       ///< Wins over the scene's `sim.seed`.
   ScriptLimits limits;
+  std::shared_ptr<const Sources> sources = nullptr;  ///< What to read instead of the disk; null: the disk.
 };
 
 }  // namespace limber

@@ -1,6 +1,9 @@
 // What a run reads, from the disk or as an earlier run has read it.
 #include "script/sources.h"
 
+#include <filesystem>
+#include <utility>
+
 #include <fmt/format.h>
 
 #include "base/random.h"
@@ -27,41 +30,49 @@ const T* Sources::known(std::map<std::string, T> Sources::*list, const std::stri
   return nullptr;
 }
 
-Result<std::string> Sources::find(const ScriptFiles& files, std::string_view name) {
-  const std::string key = fmt::format("file {}", name);
+Sources::Sources(std::map<std::string, std::string> found, const std::shared_ptr<const FileSet>& files,
+                 std::shared_ptr<ModelLibrary> library)
+    : kept_files_(files), library_(std::move(library)), found_(std::move(found)) {}
+
+// as an earlier run has found it, else as `find` does
+template <class Find>
+Result<std::string> Sources::look_up(const std::string& key, Find find) {
   if (const std::string* before = known(&Sources::found_, key)) return found_[key] = *before;
-  Result<std::string> path = files.find(name, &passed_);
+  if (kept()) return Error{fmt::format("there is no {} among the files that were kept", key)};
+  Result<std::string> path = find();
   if (path) found_[key] = *path;
   return path;
 }
 
+Result<std::string> Sources::find(const ScriptFiles& files, std::string_view name) {
+  return look_up(fmt::format("file {}", name), [&] { return files.find(name, &passed_); });
+}
+
 Result<std::string> Sources::find_lib(const ScriptFiles& files, std::string_view name) {
-  const std::string key = fmt::format("module {}", name);
-  if (const std::string* before = known(&Sources::found_, key)) return found_[key] = *before;
-  Result<std::string> path = files.find_lib(name, &passed_);
-  if (path) found_[key] = *path;
-  return path;
+  return look_up(fmt::format("module {}", name), [&] { return files.find_lib(name, &passed_); });
 }
 
 Result<std::string> Sources::find_behavior_lib(const ScriptFiles& files, std::string_view name,
                                                const std::string& behavior) {
-  const std::string key = fmt::format("module {} of {}", name, behavior);
-  if (const std::string* before = known(&Sources::found_, key)) return found_[key] = *before;
-  Result<std::string> path = files.find_behavior_lib(name, behavior, &passed_);
-  if (path) found_[key] = *path;
-  return path;
+  return look_up(fmt::format("module {} of {}", name, behavior),
+                 [&] { return files.find_behavior_lib(name, behavior, &passed_); });
 }
 
 std::string Sources::find_behavior(const ScriptFiles& files, std::string_view type) {
-  const std::string key = fmt::format("behavior {}", type);
-  if (const std::string* before = known(&Sources::found_, key)) return found_[key] = *before;
-  std::string path = files.find_behavior(type, &passed_);
-  if (!path.empty()) found_[key] = path;
-  return path;
+  const Result<std::string> path = look_up(fmt::format("behavior {}", type), [&]() -> Result<std::string> {
+    std::string file = files.find_behavior(type, &passed_);
+    return file.empty() ? Result<std::string>(Error{"none"}) : Result<std::string>(std::move(file));
+  });
+  return path ? *path : std::string();
 }
 
 Result<std::string> Sources::text(const std::string& path) {
   if (const std::string* before = known(&Sources::texts_, path)) return texts_[path] = *before;
+  if (kept()) {
+    const std::string* const text = again_->kept_files_->content(path);
+    if (text == nullptr) return Error{fmt::format("there is no file '{}' among those that were kept", path)};
+    return texts_[path] = *text;
+  }
   Result<std::string> text = read_script(path);
   contents_[path] = text ? hash_bytes(*text) : 0;
   if (!text) return text;
@@ -74,7 +85,8 @@ Result<std::shared_ptr<const BodyModel>> Sources::model(const std::string& path,
   const std::string key = model_key(path, options);
   contents_.try_emplace(path, 0);  // one that can't be read is to be watched too
   if (const auto* before = known(&Sources::models_, key)) return models_[key] = *before;
-  Result<std::shared_ptr<const BodyModel>> model = models().load_urdf(path, options);
+  ModelLibrary& library = kept() ? *again_->library_ : models();
+  Result<std::shared_ptr<const BodyModel>> model = library.load_urdf(path, options);
   if (model) models_[key] = *model;
   return model;
 }
@@ -83,9 +95,24 @@ Result<std::shared_ptr<const MeshModel>> Sources::mesh(const std::string& path, 
   const std::string key = fmt::format("{}|{:a}|{:a}|{:a}", path, scale.x, scale.y, scale.z);
   contents_.try_emplace(path, 0);
   if (const auto* before = known(&Sources::meshes_, key)) return meshes_[key] = *before;
-  Result<std::shared_ptr<const MeshModel>> mesh = models().meshes().load(path, scale);
+  ModelLibrary& library = kept() ? *again_->library_ : models();
+  Result<std::shared_ptr<const MeshModel>> mesh = library.meshes().load(path, scale);
   if (mesh) meshes_[key] = *mesh;
   return mesh;
+}
+
+SourcesRead Sources::read() const {
+  SourcesRead read{found_, texts_, {}, {}};
+  std::map<std::string, std::uint64_t> files = contents_;
+  for (const auto& [key, model] : models_) {
+    for (const std::string& file : model->files) files.try_emplace(file, 0);
+    const std::string folder = std::filesystem::path(model->file).parent_path().string();
+    for (const auto& [name, file] : model->meshes_found) read.meshes[FileSet::mesh_key(folder, name)] = file;
+  }
+  for (const auto& [path, content] : files) {
+    if (!texts_.contains(path)) read.files.push_back(path);
+  }
+  return read;
 }
 
 std::vector<SourceFile> Sources::files() const {

@@ -21,10 +21,24 @@ struct SourceFile {
   std::optional<std::uint64_t> content;  ///< hash_bytes of what was read, where that is known.
 };
 
+/// Everything that a run has read: enough to run it again where the disk holds something else by now.
+struct SourcesRead {
+  std::map<std::string, std::string> found;   ///< What was looked for, and the path that it led to.
+  std::map<std::string, std::string> texts;   ///< Of scripts, by path.
+  std::map<std::string, std::string> meshes;  ///< As FileSet::found.
+  std::vector<std::string> files;             ///< Models and meshes that were read.
+};
+
 class Sources {
  public:
   /// `again`: what an earlier run has read is taken from there, not from the disk.
   explicit Sources(std::shared_ptr<const Sources> again = nullptr) : again_(std::move(again)) {}
+
+  /// An earlier run's that was kept: all that it has not read is not there, whatever the disk holds.
+  /// `library`: the models that were made of those files before; runs that share it have one model where they load the
+  /// same, as runs from the disk do.
+  Sources(std::map<std::string, std::string> found, const std::shared_ptr<const FileSet>& files,
+          std::shared_ptr<ModelLibrary> library);
 
   /// As ScriptFiles finds them.
   Result<std::string> find(const ScriptFiles& files, std::string_view name);
@@ -41,12 +55,19 @@ class Sources {
   void close() { again_ = nullptr; }
   /// All files that were read, or looked for in vain.
   std::vector<SourceFile> files() const;
+  SourcesRead read() const;
 
  private:
   template <class T>
   const T* known(std::map<std::string, T> Sources::*list, const std::string& key) const;
 
+  bool kept() const { return again_ != nullptr && again_->library_ != nullptr; }
+  template <class Find>
+  Result<std::string> look_up(const std::string& key, Find find);
+
   std::shared_ptr<const Sources> again_;
+  std::shared_ptr<const FileSet> kept_files_;
+  std::shared_ptr<ModelLibrary> library_;  // of those files
   std::map<std::string, std::string> found_;
   std::map<std::string, std::string> texts_;
   std::map<std::string, std::uint64_t> contents_;  // by path; 0: not known

@@ -2,6 +2,8 @@
 #include "sim/body.h"
 
 #include <algorithm>
+#include <array>
+#include <bit>
 #include <utility>
 
 #include <fmt/format.h>
@@ -379,6 +381,31 @@ std::uint64_t Body::state_hash(std::uint64_t hash) const {
   }
   for (const auto& motor : motors_) mix_kept(motor->id(), Motor::table());
   for (const Behavior* behavior : behaviors_) hash = behavior->state_hash(hash);
+  return hash;
+}
+
+std::uint64_t Body::motion_hash() const {
+  // a lane for each axis: a multiplication need not wait for the one before
+  constexpr std::uint64_t kSpread = 0x9fb21c651e98df25u;
+  std::array<std::uint64_t, 3> lanes{1, 2, 3};
+  const auto mix = [&](const btVector3& v) {
+    for (int i = 0; i < 3; i++) {
+      std::uint64_t& lane = lanes[static_cast<std::size_t>(i)];
+      lane = std::rotl((lane ^ std::bit_cast<std::uint64_t>(static_cast<double>(v.m_floats[i]))) * kSpread, 29);
+    }
+  };
+  for (const auto& part : parts_) {
+    const btTransform& t = part->rigid().getWorldTransform();
+    for (int i = 0; i < 3; i++) mix(t.getBasis()[i]);
+    mix(t.getOrigin());
+    mix(part->rigid().getLinearVelocity());
+    mix(part->rigid().getAngularVelocity());
+  }
+  std::uint64_t hash = enabled() ? 1 : 0;
+  for (const std::uint64_t lane : lanes) {
+    hash ^= lane;
+    hash = splitmix64(hash);
+  }
   return hash;
 }
 

@@ -293,4 +293,15 @@ std::uint64_t World::state_hash() const {
   return behaviors_->state_hash(hash);
 }
 
+std::uint64_t World::motion_hash(std::vector<std::uint64_t>& bodies) const {
+  std::uint64_t hash = tick_;
+  bodies.clear();
+  for (const auto& body : bodies_) {
+    bodies.push_back(body->motion_hash());
+    hash ^= bodies.back();
+    hash = splitmix64(hash);
+  }
+  return hash;
+}
+
 }  // namespace limber

@@ -102,6 +102,8 @@ class World {
   std::uint64_t health_events() const { return health_events_; }
   /// Over the bits of all poses, velocities, kept rows; generators are added by their owners.
   std::uint64_t state_hash() const;
+  /// Over time and what moves only. `bodies`: of each body by itself, in their order; reused, so it allocates nothing.
+  std::uint64_t motion_hash(std::vector<std::uint64_t>& bodies) const;
   const TickTimes& times() const { return times_; }
 
   /// One a link, built once a model and shared by all its bodies.

@@ -78,6 +78,19 @@ TEST_F(EvaluateTest, MistypedTextIsNoFaultOfTheShow) {
   EXPECT_TRUE(show.outbox().empty()) << "nobody on the network hears of it";
 }
 
+TEST_F(EvaluateTest, OneThatWasStoppedCostsTheNextNothing) {
+  const SceneFile scene("n = 1");
+  Show show(scene.path());
+  push(show, "while true do end");
+  push(show, "n + 1");
+  push(show, "('abc'):gsub('b', 'x')");
+  show.ticks(1);
+  ASSERT_EQ(answers.said.size(), 3U);
+  EXPECT_EQ(answers.said[0].kind, AnswerKind::error);
+  EXPECT_EQ(text(1), "2");
+  EXPECT_EQ(text(2), "axc\t1");
+}
+
 TEST_F(EvaluateTest, WhatItPrintedCanBeToldApart) {
   const SceneFile scene("sim:on_step(function() print('tick') end)");
   EngineOptions options = fast_options(scene.path());

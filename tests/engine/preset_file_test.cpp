@@ -131,7 +131,7 @@ TEST_F(PresetFileTest, MoreThanItTakesIsNotRead) {
 
 TEST_F(PresetFileTest, ALinkAndTheModeStay) {
   const std::string real = (folder / "real.json").string();
-  std::ofstream(real) << text_of({});
+  std::ofstream(real) << text_of(PresetList{});
   fs::create_symlink("real.json", path);
   chmod(real.c_str(), 0600);
   PresetFile file(path);

@@ -1,0 +1,280 @@
+// Engine: recording takes and playing them again.
+#include <algorithm>
+#include <ctime>
+#include <filesystem>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "base/log.h"
+#include "base/text.h"
+#include "engine/draft.h"
+#include "engine/engine.h"
+
+namespace limber {
+
+namespace {
+
+constexpr std::size_t kMostName = 100;
+constexpr const char* kReplays = "a take is replayed; it takes no messages";
+
+// a name that came by a message leads into no other folder
+Result<std::string> take_name(const Message& message, const std::string& scene) {
+  if (!message.args.empty() && !message.args[0].text.empty()) {
+    std::string name = message.args[0].text;
+    if (name.ends_with(".take")) name.resize(name.size() - 5);
+    const bool plain = !name.empty() && name.size() <= kMostName && name.front() != '.' &&
+                       name.find_first_of("/\\") == name.npos &&
+                       std::ranges::none_of(name, [](unsigned char c) { return c < 0x20 || c == 0x7f; });
+    if (!plain) return Error{fmt::format("'{}' is no name of a take: a word without / is", printable(name))};
+    return name;
+  }
+  // the hour names the file; no tick sees it
+  const std::time_t now = std::time(nullptr);
+  std::tm here{};
+  localtime_r(&now, &here);
+  char text[32] = {};
+  (void)std::strftime(text, sizeof text, "%Y-%m-%d-%H%M%S", &here);
+  return fmt::format("{}-{}", std::filesystem::path(scene).stem().string(), text);
+}
+
+// of a replay: what was stopped then is stopped again, nothing else is
+ScriptLimits no_limits() {
+  ScriptLimits limits;
+  limits.call_ms = limits.run_ms = 1e9;
+  limits.memory = std::size_t{16} << 30u;
+  return limits;
+}
+
+double world_row(const Stage& stage, const char* name) {
+  return std::as_const(stage.store).values(stage.world.id(), World::table().at(name))[0];
+}
+
+}  // namespace
+
+std::function<void(const std::string&)> Engine::say_take_failed() {
+  return [this](const std::string& why) {
+    log_error("{}", why);
+    link_.push_out({Outgoing::To::error, {}, error_message("/take/record", why)});
+  };
+}
+
+TakeBegin Engine::take_begin(bool reset) const {
+  TakeBegin begin;
+  begin.reset = reset;
+  begin.scene = options_.scene;
+  begin.seed = options_.scene_options.seed;
+  begin.package_paths = options_.scene_options.package_paths;
+  begin.preset = options_.preset;
+  begin.sets = options_.sets;
+  if (!reset) return begin;
+  begin.world_seed = stage_->world.seed();
+  begin.scene_seed = scene_seed_;
+  begin.paused = world_row(*stage_, "paused") != 0;
+  begin.speed = world_row(*stage_, "speed");
+  begin.preset_file = presets_.file();
+  begin.presets = presets_.list();
+  for (const HandStep& step : hand_.in_order()) {
+    TakeHand& kept = begin.hand.emplace_back();
+    if (step.message != nullptr) kept.message = *step.message;
+    if (step.address != nullptr) {
+      kept.kind = TakeHand::Kind::given_back;
+      kept.message.address = *step.address;
+    }
+    if (step.blend == nullptr) continue;
+    kept.kind = TakeHand::Kind::blend;
+    kept.presets = {step.blend->a};
+    if (step.blend->amount > 0) kept.presets.push_back(step.blend->b);
+    kept.amount = step.blend->amount;
+  }
+  return begin;
+}
+
+Result<void> Engine::start_record() {
+  calls_.begin_tick();
+  recorder_ =
+      std::make_unique<TakeRecorder>(TakeWriter::Place{options_.record, false}, take_begin(false), say_take_failed());
+  Result<void> opened = recorder_->opened();
+  if (!opened) recorder_ = nullptr;
+  return opened;
+}
+
+Engine::TakenRun Engine::begin_run(TakeRun::Kind kind, bool again, const std::string& scene) {
+  TakenRun run;
+  if (recorder_ != nullptr) run.place = recorder_->begin_run({kind, false, again, 0, scene});
+  if (player_ == nullptr) return run;
+  run.told = player_->take_run(kind);
+  if (player_->current_scripts()) return run;
+  run.fails = run.told == nullptr || !run.told->good;
+  if (!run.fails) run.sources = player_->sources(*run.told);
+  return run;
+}
+
+void Engine::run_was_good(const TakenRun& run, const Stage& stage, std::optional<PresetList> presets,
+                          const std::string& preset_file) {
+  if (recorder_ == nullptr) return;
+  recorder_->run_was_good(run.place,
+                          {stage.scene == nullptr ? nullptr : stage.scene->sources(), std::move(presets), preset_file});
+}
+
+Outcome Engine::ask_take(const Message& message) {
+  Outcome outcome;
+  outcome.kind = Outcome::Kind::answered;
+  if (replays()) return outcome;
+  if (plain_name(message.address) == "/take/stop") {
+    if (recorder_ == nullptr) return Outcome::refused("no take is being recorded; /take/record begins one");
+    take_ends_ = true;
+    outcome.answers.push_back({"/take/stopped", {}});
+    return outcome;
+  }
+  if (recorder_ != nullptr || take_wanted_)
+    return Outcome::refused("a take is being recorded already; /take/stop ends it");
+  if (stage_->scene == nullptr) return Outcome::refused("there is no scene that could be recorded");
+  const Result<std::string> name = take_name(message, options_.scene);
+  if (!name) return Outcome::refused(name.error());
+  take_wanted_ = (std::filesystem::path(stage_->scene->show_folder()) / "takes" / (*name + ".take")).string();
+  outcome.answers.push_back({"/take/recording", {Arg::of(*name)}});
+  return outcome;
+}
+
+// all that a take holds comes after the scene's start
+void Engine::begin_take() {
+  const std::string file = *std::exchange(take_wanted_, std::nullopt);
+  (void)stage_->world.take_reset_request();
+  edits_.clear();  // a replay does not know of them
+  calls_.begin_tick();
+  recorder_ = std::make_unique<TakeRecorder>(TakeWriter::Place{file, true}, take_begin(true), say_take_failed());
+  if (reset()) {
+    log_info("a take is recorded: {}", printable(file));
+    take_tick(false, true);
+  } else {
+    drop_take();
+    say_take_failed()("a take begins with the scene's start, and its file has an error");
+  }
+}
+
+void Engine::drop_take() {
+  if (recorder_ == nullptr) return;
+  written_.push_back(recorder_->abandon());
+  recorder_ = nullptr;
+}
+
+void Engine::end_take() {
+  if (recorder_ == nullptr) return;
+  written_.push_back(recorder_->finish({stage_->world.tick(), state_hash()}));
+  recorder_ = nullptr;
+}
+
+void Engine::finish_saving() {
+  presets_.finish_saving();
+  written_.clear();
+}
+
+void Engine::take_tick(bool running, bool begins) {
+  const auto hash = [this] { return state_hash(); };
+  if (player_ != nullptr) player_->compare(stage_->world, calls_, hash);
+  if (recorder_ != nullptr && recorder_->failed()) end_take();
+  if (recorder_ != nullptr) recorder_->end_tick(running, stage_->world, calls_, hash, begins);
+  if (!written_.empty()) std::erase_if(written_, [](const auto& writer) { return writer->done(); });
+}
+
+Result<void> Engine::start_replay() {
+  auto player = TakePlayer::open(options_.replay, options_.current_scripts);
+  if (!player) return Error{player.error()};
+  player_ = std::move(*player);
+  const TakeBegin& begin = player_->begin();
+  options_.scene = begin.scene;
+  options_.scene_options.seed = begin.seed;
+  options_.scene_options.package_paths = begin.package_paths;
+  options_.preset = begin.preset;
+  options_.sets = begin.sets;
+  const bool exact = !player_->current_scripts();
+  if (exact) options_.scene_options.limits = no_limits();
+  player_->next();
+  calls_.begin_tick(exact ? player_->tick().stopped : std::vector<StoppedCall>());
+  Result<void> begun = replay_beginning();
+  if (!begun) return begun;
+  take_tick(false);
+  publish();
+  return begun;
+}
+
+Result<void> Engine::replay_beginning() {
+  const TakeBegin& begin = player_->begin();
+  if (!begin.reset) {
+    const std::vector<TakeRun>& runs = player_->tick().runs;
+    auto book = runs.empty() ? std::nullopt : player_->presets(runs.front());
+    if (book) presets_.open({std::move(book->list), nullptr, book->file});
+    return start_show();
+  }
+  presets_.open({begin.presets, nullptr, begin.preset_file});
+  for (const TakeHand& step : begin.hand) {
+    if (step.kind == TakeHand::Kind::message) hand_.remember(step.message);
+    if (step.kind == TakeHand::Kind::given_back) hand_.give_back(step.message.address);
+    if (step.kind != TakeHand::Kind::blend) continue;
+    Blend blend = step.presets.size() == 1 ? Blend::of(step.presets[0]) : aligned(step.presets[0], step.presets[1]);
+    if (step.presets.size() > 1) blend.amount = step.amount;
+    hand_.recall(blend);
+  }
+  const auto set = [&](const char* row, double value) {
+    (void)stage_->store.set(stage_->world.id(), World::table().at(row), {&value, 1});
+  };
+  set("seed", static_cast<double>(begin.world_seed));
+  set("paused", begin.paused ? 1 : 0);
+  set("speed", begin.speed);
+  scene_seed_ = begin.scene_seed;
+  return reset() ? Result<void>() : Result<void>(Error{"the scene's file has an error"});
+}
+
+void Engine::replay_runs() {
+  while (const TakeRun* run = player_->run_from_outside()) replay_run(*run);
+}
+
+void Engine::replay_run(const TakeRun& run) {
+  if (run.kind == TakeRun::Kind::reload) {
+    run_now(run.kind, run.again);
+    return;
+  }
+  const TakenRun taken = begin_run(run.kind, run.again, run.scene);
+  if (run.kind == TakeRun::Kind::order) {
+    ordered_ = reload_.order(*stage_, run.again);
+  } else if (run.kind == TakeRun::Kind::take) {
+    if (taken.fails || !ordered_) return;
+    ordered_->options.sources = taken.sources;
+    Draft draft(*std::exchange(ordered_, std::nullopt), *this);
+    take(draft);
+  } else {
+    auto fresh = std::make_unique<Stage>(link_, presets_, edits_);
+    SceneOptions scene_options = options_.scene_options;
+    scene_options.sources = taken.sources;
+    if (!fresh->run_beside(run.scene, *this, scene_options)) return;
+    auto kept = player_->presets(run);
+    Presets::Book book;
+    if (kept) book = {std::move(kept->list), nullptr, kept->file};
+    play_scene(run.scene, fresh, book);
+  }
+}
+
+void Engine::replay_messages(Hands& hands) {
+  link_.inbox.drain(commands_);
+  next_command_ = commands_.size();
+  asks_ = link_.image_asks.load();
+  for (const Command& command : commands_) {
+    for (const Message& message : command.messages) refuse(message.address, command.origin, kReplays);
+    if (command.evaluate != nullptr) command.evaluate->answer({Evaluation::Kind::error, kReplays, 0, 0, 0});
+  }
+  answers_taken_ = true;
+  for (const TakeMessage& taken : player_->tick().messages) {
+    Message message = taken.message;
+    hands.begin(taken.origin);
+    if (taken.evaluate) {
+      Evaluate wish;
+      wish.text = std::move(message.address);
+      evaluate(wish, taken.origin);
+    } else {
+      execute(message, taken.origin);
+    }
+  }
+}
+
+}  // namespace limber

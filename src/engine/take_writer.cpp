@@ -1,0 +1,219 @@
+// The lock is held to take what has come, never while it is written.
+#include "engine/take_writer.h"
+
+#include <fcntl.h>
+#include <pthread.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <chrono>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "base/random.h"
+#include "base/text.h"
+#include "engine/preset_text.h"
+#include "engine/take_text.h"
+
+namespace limber {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr auto kEvery = std::chrono::milliseconds(100);       // what a crash may cost
+constexpr std::size_t kSoon = std::size_t{1} << 20u;          // more is written at once
+constexpr std::size_t kMostPending = std::size_t{64} << 20u;  // a disk that hangs fills no memory
+
+std::string disk_reason() { return std::strerror(errno); }
+
+std::string numbered(const std::string& path, int n) {
+  if (n == 1) return path;
+  const fs::path whole(path);
+  return (whole.parent_path() / fmt::format("{}-{}{}", whole.stem().string(), n, whole.extension().string())).string();
+}
+
+}  // namespace
+
+TakeWriter::TakeWriter(Place place, TakeHeader header, std::function<void(const std::string&)> failed)
+    : place_(std::move(place)),
+      header_(std::move(header)),
+      tell_failed_(std::move(failed)),
+      thread_([this] { run(); }) {}
+
+TakeWriter::~TakeWriter() {
+  close();
+  thread_.join();
+}
+
+Result<void> TakeWriter::opened() {
+  std::unique_lock lock(mutex_);
+  changed_.wait(lock, [this] { return open_; });
+  return error_.empty() ? Result<void>() : Result<void>(Error{error_});
+}
+
+void TakeWriter::write(std::string_view frames) {
+  if (failed()) return;
+  bool soon = false;
+  {
+    const std::scoped_lock lock(mutex_);
+    if (bytes_.size() > kMostPending) full_ = true;
+    if (full_) return;
+    bytes_.append(frames);
+    soon = bytes_.size() >= kSoon;
+  }
+  if (soon) changed_.notify_all();
+}
+
+void TakeWriter::write(TakeBegin begin) {
+  const std::scoped_lock lock(mutex_);
+  jobs_.push_back({bytes_.size(), std::move(begin), std::nullopt});
+}
+
+void TakeWriter::write(TakeFiles files) {
+  const std::scoped_lock lock(mutex_);
+  jobs_.push_back({bytes_.size(), std::nullopt, std::move(files)});
+}
+
+void TakeWriter::close() {
+  {
+    const std::scoped_lock lock(mutex_);
+    end_ = true;
+  }
+  changed_.notify_all();
+}
+
+void TakeWriter::abandon() {
+  {
+    const std::scoped_lock lock(mutex_);
+    abandoned_ = true;
+  }
+  close();
+}
+
+void TakeWriter::fail(const std::string& why) {
+  if (failed_.exchange(true)) return;
+  tell_failed_(fmt::format("{}: {}", printable(place_.path), why));
+}
+
+Result<void> TakeWriter::open_file() {
+  std::error_code ignored;
+  if (place_.numbered) fs::create_directories(fs::path(place_.path).parent_path(), ignored);
+  const std::string first = place_.path;
+  for (int n = 1; n < 10000; n++) {
+    const std::string path = numbered(first, n);
+    file_ = ::open(path.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0644);
+    if (file_ >= 0) {
+      const std::scoped_lock lock(mutex_);
+      place_.path = path;
+      return {};
+    }
+    if (errno != EEXIST) break;
+    if (!place_.numbered)
+      return Error{
+          fmt::format("{} is there already; a take writes over nothing, so give another name", printable(first))};
+  }
+  return Error{fmt::format("{} can't be written: {}", printable(first), disk_reason())};
+}
+
+void TakeWriter::put(std::string_view bytes) {
+  while (!bytes.empty() && !failed()) {
+    const ssize_t written = ::write(file_, bytes.data(), bytes.size());
+    if (written < 0 && errno == EINTR) continue;
+    if (written <= 0) return fail(fmt::format("the take ends here, the disk takes no more: {}", disk_reason()));
+    bytes.remove_prefix(static_cast<std::size_t>(written));
+  }
+}
+
+// the number of a content; it is written where it is new
+std::uint32_t TakeWriter::content(const std::string& bytes) {
+  const auto [at, fresh] = contents_.try_emplace(hash_bytes(bytes, bytes.size()), 0);
+  if (!fresh) return at->second;
+  at->second = static_cast<std::uint32_t>(contents_.size());
+  frame_.clear();
+  append_frame(frame_, TakeFrame::content, bytes);
+  put(frame_);
+  return at->second;
+}
+
+void TakeWriter::put(const Job& job) {
+  frame_.clear();
+  if (job.begin) {
+    append_frame(frame_, TakeFrame::begin, text_of(*job.begin));
+    return put(frame_);
+  }
+  TakeFileList list;
+  if (job.files->sources != nullptr) {
+    SourcesRead read = job.files->sources->read();
+    list.found = std::move(read.found);
+    list.meshes = std::move(read.meshes);
+    for (const auto& [path, text] : read.texts) list.files.emplace_back(path, content(text));
+    for (const std::string& path : read.files) {
+      std::ifstream in(path, std::ios::binary);
+      const bool there = static_cast<bool>(in);
+      const std::string bytes{std::istreambuf_iterator<char>(in), {}};
+      list.files.emplace_back(path, there ? content(bytes) : 0);
+    }
+  }
+  list.has_presets = job.files->presets.has_value();
+  if (list.has_presets) list.presets = text_of(*job.files->presets);
+  list.preset_file = job.files->preset_file;
+  frame_.clear();
+  append_frame(frame_, TakeFrame::files, text_of(list));
+  put(frame_);
+}
+
+void TakeWriter::write_all(std::string_view bytes, std::vector<Job>& jobs) {
+  std::size_t at = 0;
+  for (const Job& job : jobs) {
+    put(bytes.substr(at, job.at - at));
+    at = job.at;
+    put(job);
+  }
+  put(bytes.substr(at));
+}
+
+void TakeWriter::run() {
+  pthread_setname_np(pthread_self(), "limber-take");
+  const Result<void> open = open_file();
+  if (open) put(head_text(header_));
+  if (!open) failed_.store(true);
+  {
+    const std::scoped_lock lock(mutex_);
+    open_ = true;
+    if (!open) error_ = open.error();
+  }
+  changed_.notify_all();
+  if (!open) {
+    tell_failed_(open.error());
+    done_.store(true);
+    return;
+  }
+  std::string bytes;
+  std::vector<Job> jobs;
+  for (bool end = false, full = false; !end;) {
+    bytes.clear();
+    jobs.clear();
+    {
+      std::unique_lock lock(mutex_);
+      changed_.wait_for(lock, kEvery, [this] { return end_ || bytes_.size() >= kSoon; });
+      end = end_;
+      full = full_;
+      bytes.swap(bytes_);
+      jobs.swap(jobs_);
+    }
+    write_all(bytes, jobs);
+    if (full) fail("the take ends here: the disk is too slow for it");
+  }
+  if (abandoned_) unlink(place_.path.c_str());
+  (void)fdatasync(file_);
+  ::close(file_);
+  done_.store(true);
+}
+
+}  // namespace limber

@@ -1,0 +1,75 @@
+// Takes by the command line: recorded, told of, replayed, also after a kill.
+#include "app/program.h"
+
+namespace limber::app_test {
+namespace {
+
+constexpr const char* kTakeScene = R"(
+sim:add_body("floor"):add_part("floor", sim:add_plane_shape("floor"))
+local ball = sim:add_sphere_shape("ball", 0.1)
+for i = 1, 4 do sim:add_body("ball" .. i):add_part("p", ball, { position = vec3(i, 0, 0.5 * i) }) end
+sim:every(0.2, function() sim:body("ball1").parts[1]:apply_impulse(rng:direction() * 0.01) end)
+)";
+
+std::string last_line(const std::string& text, const std::string& start) {
+  const std::size_t at = text.rfind(start);
+  return at == std::string::npos ? "" : text.substr(at, text.find('\n', at) - at);
+}
+
+TEST(TakeApp, ARecordedRunIsReplayedToItsHash) {
+  const Folder folder;
+  const std::string scene = folder.file("s.lua", kTakeScene);
+  const std::string take = folder.path() + "/s.take";
+  const Ran recorded = run({scene, "--fast", "--ticks", "150", "--seed", "5", "--set", "/physics/sim/substeps=3",
+                            "--record", take, "--hash"});
+  ASSERT_EQ(recorded.code, 0) << recorded.err;
+  const std::string hash = last_line(recorded.out, "hash ");
+  ASSERT_TRUE(hash.ends_with(" tick 150")) << recorded.out;
+  const Ran info = run({"take", "info", take});
+  EXPECT_EQ(info.code, 0) << info.err;
+  EXPECT_NE(info.out.find("ticks     150\n"), std::string::npos) << info.out;
+  EXPECT_NE(info.out.find("end       whole; " + hash + "\n"), std::string::npos) << info.out;
+  EXPECT_NE(info.out.find(scene), std::string::npos);
+  // what the disk holds does not matter
+  folder.file("s.lua", "error('another one')\n");
+  for (const std::vector<std::string>& how :
+       {std::vector<std::string>{"--fast"}, {"--osc-in", "off", "--osc-out", "off", "--query", "off"}}) {
+    std::vector<std::string> args = {"--replay", take, "--hash"};
+    args.insert(args.end(), how.begin(), how.end());
+    const Ran again = run(args);
+    EXPECT_EQ(again.code, 0) << again.err;
+    EXPECT_EQ(last_line(again.out, "hash "), hash);
+    EXPECT_NE(again.err.find("replayed 150 ticks: every hash is the take's\n"), std::string::npos) << again.err;
+  }
+}
+
+TEST(TakeApp, CurrentScriptsSayWhereTheRunsPart) {
+  const Folder folder;
+  const std::string scene = folder.file("s.lua", kTakeScene);
+  const std::string take = folder.path() + "/s.take";
+  ASSERT_EQ(run({scene, "--fast", "--ticks", "60", "--record", take}).code, 0);
+  folder.file("s.lua", std::string(kTakeScene) +
+                           "sim:at(0.5, function() sim:body('ball3').parts[1]:apply_impulse(vec3(0, 0, 1)) end)\n");
+  const Ran again = run({"--replay", take, "--fast", "--with-current-scripts"});
+  EXPECT_EQ(again.code, 0) << again.err;
+  EXPECT_NE(again.err.find("the runs part at tick 31; the first body that differs is 'ball3'"), std::string::npos)
+      << again.err;
+}
+
+TEST(TakeApp, AKilledShowPlaysToItsLastWholeTick) {
+  const Folder folder;
+  const std::string scene = folder.file("s.lua", kTakeScene);
+  const std::string take = folder.path() + "/s.take";
+  {
+    Running running(limber({scene, "--osc-in", "off", "--osc-out", "off", "--query", "off", "--record", take}));
+    ASSERT_TRUE(running.wait_for("tick ")) << running.err();  // a status line: a second has gone
+    running.signal(SIGKILL);
+  }
+  const Ran again = run({"--replay", take, "--fast"});
+  EXPECT_EQ(again.code, 0) << again.err;
+  EXPECT_NE(again.err.find("every hash is the take's; the take was cut off there\n"), std::string::npos) << again.err;
+  EXPECT_NE(run({"take", "info", take}).out.find("end       cut off behind tick "), std::string::npos);
+}
+
+}  // namespace
+}  // namespace limber::app_test

@@ -1,0 +1,233 @@
+// Takes: what was recorded comes again to the bit, from the take alone.
+#include <sstream>
+
+#include "engine/taken.h"
+
+namespace limber::engine_test {
+namespace {
+
+// no behaviour of files, no models: small enough for every byte of it
+constexpr const char* kSmallScene = R"(
+local ball = sim:add_sphere_shape("ball", 0.1)
+for _, name in ipairs { "left", "right" } do
+  sim:add_body(name):add_part("p", ball, { position = vec3(name == "left" and 1 or -1, 0, 1) })
+end
+osc:on("/push", function(x) sim:body("right").parts[1]:apply_impulse(vec3(x, 0, rng:uniform(0, 1))) end)
+)";
+
+struct SmallTake {
+  ShowFolder folder;
+  std::string scene = folder.path("scripts/small.lua");
+  std::string take = folder.path("small.take");
+  std::vector<std::uint64_t> hashes;  // of each tick
+
+  explicit SmallTake(int ticks) {
+    log_to_stderr(false);
+    folder.write("scripts/small.lua", kSmallScene);
+    EngineOptions options = fast_options(scene);
+    options.record = take;
+    Show show(options);
+    for (int i = 0; i < ticks; i++) {
+      show.send("/push", 0.1 * i);
+      show.ticks(1);
+      hashes.push_back(show.engine.state_hash());
+    }
+    show.engine.end_take();
+    show.engine.finish_saving();
+  }
+};
+
+TEST(Take, AWildShowComesAgainToTheBit) {
+  const ShowFolder folder;
+  lay_out(folder);
+  const std::string take = folder.path("wild.take");
+  const std::uint64_t hash = record_take(folder, take, 400, 1);
+  for (int i = 0; i < 2; i++) {
+    const Replayed again = replay_take(take);
+    ASSERT_EQ(again.error, "");
+    EXPECT_FALSE(again.verdict.parted.has_value()) << text_of(again.verdict);
+    EXPECT_FALSE(again.verdict.cut_off);
+    EXPECT_GT(again.verdict.ticks, 200u);
+    EXPECT_EQ(again.hash, hash);
+  }
+}
+
+TEST(Take, TheFilesOnTheDiskDoNotMatter) {
+  ShowFolder folder;
+  lay_out(folder);
+  const std::string take = folder.path("kept.take");
+  const std::uint64_t hash = record_take(folder, take, 80, 2);
+  for (const char* gone : {"scripts", "behaviors_lua", "urdf"}) std::filesystem::remove_all(folder.path(gone));
+  const Replayed again = replay_take(take);
+  ASSERT_EQ(again.error, "");
+  EXPECT_FALSE(again.verdict.parted.has_value()) << text_of(again.verdict);
+  EXPECT_EQ(again.hash, hash);
+}
+
+TEST(Take, CurrentScriptsPartWhereTheyDiffer) {
+  const SmallTake small(30);
+  EXPECT_FALSE(replay_take(small.take, true).verdict.parted.has_value());
+  // the same until half a second has gone, then one body is pushed
+  small.folder.write("scripts/small.lua",
+                     std::string(kSmallScene) +
+                         "sim:at(0.25, function() sim:body('left').parts[1]:apply_impulse(vec3(0, 0, 1)) end)\n");
+  const Replayed exact = replay_take(small.take);
+  EXPECT_FALSE(exact.verdict.parted.has_value()) << text_of(exact.verdict);
+  const Replayed parted = replay_take(small.take, true);
+  ASSERT_TRUE(parted.verdict.parted.has_value());
+  // 15 ticks of 1/60 s are 0.25 s: the next one makes the call
+  EXPECT_EQ(*parted.verdict.parted, 16u);
+  EXPECT_EQ(parted.verdict.body, "left");
+  EXPECT_EQ(parted.verdict.ticks, 30u) << "it plays on to the end";
+}
+
+TEST(Take, BeginsInTheMiddleOfAShowWithAReset) {
+  const ShowFolder folder;
+  lay_out(folder);
+  std::uint64_t hash = 0;
+  {
+    log_to_stderr(false);
+    Show show(taken_options(folder));
+    play_wildly(show, folder, 60, 3);
+    show.send("/preset/store", "kept");
+    show.send("/scene/wind", 1.5);
+    show.send("/preset/recall", "kept", 0.1);
+    show.send("/transport/play");
+    show.ticks(20);
+    show.send("/take/record", "middle");
+    show.ticks(1);
+    EXPECT_EQ(show.engine.world().tick(), 0u) << "the scene from its start";
+    play_wildly(show, folder, 60, 4);
+    show.send("/take/stop");
+    show.ticks(1);
+    hash = show.engine.state_hash();
+    show.engine.finish_saving();
+  }
+  const Replayed again = replay_take(folder.path("takes/middle.take"));
+  ASSERT_EQ(again.error, "");
+  EXPECT_FALSE(again.verdict.parted.has_value()) << text_of(again.verdict);
+  EXPECT_EQ(again.hash, hash);
+}
+
+TEST(Take, CutAtAnyByteItPlaysToItsLastWholeTick) {
+  const SmallTake small(12);
+  const std::string whole = take_bytes(small.take);
+  const std::string cut = small.folder.path("cut.take");
+  std::uint64_t last = 0;
+  std::size_t begun = 0;
+  for (std::size_t size = 0; size <= whole.size(); size++) {
+    // the ticks that are whole, by the reader alone; an engine plays some of them
+    auto reader = TakeReader::of(std::make_unique<std::istringstream>(whole.substr(0, size)), "cut.take");
+    std::uint64_t ticks = 0;
+    while (reader.ok()) {
+      const std::optional<TakeTick> tick = (*reader)->next();
+      if (!tick) break;
+      ticks = tick->tick;
+      begun = begun == 0 ? size : begun;
+    }
+    EXPECT_GE(ticks, last) << size;
+    const bool is_new = ticks > last;
+    last = ticks;
+    if (reader.ok()) {
+      EXPECT_EQ((*reader)->damage(), "") << size;
+      EXPECT_EQ((*reader)->end().has_value(), size == whole.size()) << size;
+    } else {
+      EXPECT_TRUE(reader.error().starts_with("cut.take: ")) << reader.error();
+    }
+    if (!is_new && size % 211 != 0 && size != whole.size()) continue;
+    std::ofstream(cut, std::ios::binary) << whole.substr(0, size);
+    const Replayed played = replay_take(cut);
+    EXPECT_EQ(played.error.empty(), begun != 0) << size << ": " << played.error;
+    if (!played.error.empty()) continue;
+    EXPECT_FALSE(played.verdict.parted.has_value()) << size << ": " << text_of(played.verdict);
+    EXPECT_EQ(played.verdict.cut_off, size < whole.size()) << size;
+    EXPECT_EQ(played.verdict.ticks, ticks) << size;
+    if (ticks > 0) {
+      EXPECT_EQ(played.hash, small.hashes[ticks - 1]) << size;
+    }
+  }
+  EXPECT_EQ(last, 12u);
+}
+
+TEST(Take, DamagedBytesAreFoundAndCostOnlyWhatFollows) {
+  const SmallTake small(12);
+  const std::string whole = take_bytes(small.take);
+  const std::string bad = small.folder.path("bad.take");
+  Random random(1, "bytes");
+  int found = 0;
+  for (int i = 0; i < 80; i++) {
+    std::string bytes = whole;
+    const auto at = static_cast<std::size_t>(random.uniform() * static_cast<double>(bytes.size()));
+    bytes[at] = static_cast<char>(bytes[at] ^ (1 << static_cast<int>(random.uniform() * 8)));
+    std::ofstream(bad, std::ios::binary) << bytes;
+    const Replayed played = replay_take(bad);
+    if (!played.error.empty()) {
+      EXPECT_NE(played.error.find("bad.take: "), std::string::npos) << at;
+      found++;
+    } else if (!played.verdict.damage.empty() || played.verdict.cut_off) {
+      EXPECT_FALSE(played.verdict.parted.has_value()) << at << ": " << text_of(played.verdict);
+      found++;
+    }
+  }
+  // only what the second line tells people may be another word without anybody seeing it
+  EXPECT_GT(found, 60);
+}
+
+TEST(Take, MessagesAboutTakesThatMakeNoSenseAreRefused) {
+  const ShowFolder folder;
+  folder.write("scripts/small.lua", kSmallScene);
+  log_to_stderr(false);
+  Show show(fast_options(folder.path("scripts/small.lua")));
+  const auto refused = [&](std::string address, auto... args) {
+    show.outbox();
+    show.send(std::move(address), args...);
+    show.ticks(1);
+    const std::vector<std::string> said = show.outbox();
+    return !said.empty() && said.front().starts_with("/error /take/");
+  };
+  EXPECT_TRUE(refused("/take/stop"));
+  for (const char* name : {"../up", "/abs", ".hidden", "a\nb"}) EXPECT_TRUE(refused("/take/record", name)) << name;
+  EXPECT_TRUE(refused("/take/record", 5));
+  EXPECT_FALSE(refused("/take/record", "one"));
+  EXPECT_TRUE(refused("/take/record", "two"));
+  EXPECT_FALSE(refused("/take/stop"));
+  EXPECT_FALSE(refused("/take/record", "one"));
+  EXPECT_FALSE(refused("/take/stop"));
+  show.engine.finish_saving();
+  EXPECT_TRUE(std::filesystem::exists(folder.path("takes/one.take")));
+  EXPECT_TRUE(std::filesystem::exists(folder.path("takes/one-2.take"))) << "nothing is written over";
+  EXPECT_FALSE(std::filesystem::exists(folder.path("takes/two.take")));
+}
+
+TEST(Take, AMinuteOfAFloodIsSmall) {
+  const ShowFolder folder;
+  folder.write("scripts/small.lua", kSmallScene);
+  EngineOptions options = fast_options(folder.path("scripts/small.lua"));
+  options.record = folder.path("flood.take");
+  Show show(options);
+  Random random(1, "flood");
+  const int seconds = 6;
+  for (int i = 0; i < seconds * 60; i++) {
+    for (int k = 0; k < 17; k++)
+      show.send("/physics/body/left/part/p/friction", static_cast<double>(static_cast<float>(random.uniform())));
+    show.ticks(1);
+  }
+  show.engine.end_take();
+  show.engine.finish_saving();
+  EXPECT_LT(take_bytes(options.record).size() * 60 / seconds, 1'000'000u);
+  const Replayed again = replay_take(options.record);
+  EXPECT_FALSE(again.verdict.parted.has_value()) << text_of(again.verdict);
+}
+
+TEST(Take, ARecordingShowPlaysAsOneThatIsNotRecorded) {
+  const SmallTake small(20);
+  Show show(fast_options(small.scene));
+  for (int i = 0; i < 20; i++) {
+    show.send("/push", 0.1 * i);
+    show.ticks(1);
+    EXPECT_EQ(show.engine.state_hash(), small.hashes[static_cast<std::size_t>(i)]) << i;
+  }
+}
+
+}  // namespace
+}  // namespace limber::engine_test

@@ -1,0 +1,130 @@
+// The bytes of takes: every number and text comes back as it was, and forms that repeat are short.
+#include "engine/take_text.h"
+
+#include <bit>
+#include <cmath>
+#include <limits>
+
+#include "engine/rig.h"
+
+namespace limber::engine_test {
+namespace {
+
+bool same_arg(const Arg& a, const Arg& b) {
+  return a.kind == b.kind && a.text == b.text &&
+         std::bit_cast<std::uint64_t>(a.number) == std::bit_cast<std::uint64_t>(b.number);
+}
+
+TEST(TakeText, NumbersComeBackToTheBit) {
+  std::string text;
+  TakeBytes out(text);
+  TakeForms forms;
+  std::vector<double> numbers = {0,           -0.0,  1,       -1,    127,   128,
+                                 -64,         1e9,   1e9 - 1, 0.5,   0.1,   double{0.1F},
+                                 3e38,        1e300, 5e-324,  1e-40, -2e-7, std::numeric_limits<double>::infinity(),
+                                 std::nan("")};
+  for (const double v : numbers) forms.write(out, message("/a", v), {});
+  TakeScan in(text);
+  TakeForms read;
+  for (const double v : numbers) {
+    TakeMessage m;
+    ASSERT_TRUE(read.read(in, m)) << v;
+    ASSERT_EQ(m.message.args.size(), 1u);
+    EXPECT_TRUE(same_arg(m.message.args[0], Arg::of(v))) << v;
+  }
+  EXPECT_TRUE(in.done());
+}
+
+TEST(TakeText, MessagesComeBackWithTheirSenders) {
+  const std::vector<Message> messages = {message("/a", 1, "text", true, false, Arg{}),
+                                         message("/a", "", std::string(300, 'x')), message("/bb")};
+  const Origin origins[] = {{Hand::osc, 0x7f000001, 4000}, {Hand::panel, 0, 0}};
+  std::string text;
+  TakeBytes out(text);
+  TakeForms forms;
+  for (int i = 0; i < 3; i++) {
+    for (const Message& m : messages) {
+      for (const Origin& origin : origins) forms.write(out, m, origin);
+    }
+  }
+  TakeScan in(text);
+  TakeForms read;
+  for (int i = 0; i < 3; i++) {
+    for (const Message& m : messages) {
+      for (const Origin& origin : origins) {
+        TakeMessage taken;
+        ASSERT_TRUE(read.read(in, taken));
+        EXPECT_EQ(taken.message.address, m.address);
+        EXPECT_EQ(taken.origin, origin);
+        ASSERT_EQ(taken.message.args.size(), m.args.size());
+        for (std::size_t k = 0; k < m.args.size(); k++) EXPECT_TRUE(same_arg(taken.message.args[k], m.args[k]));
+      }
+    }
+  }
+  EXPECT_TRUE(in.done());
+}
+
+TEST(TakeText, AFormStandsOnce) {
+  std::string text;
+  TakeBytes out(text);
+  TakeForms forms;
+  const Message sent = message("/physics/body/arm1/motor/m/target", double{0.3F});
+  forms.write(out, sent, {});
+  const std::size_t first = text.size();
+  forms.write(out, sent, {});
+  EXPECT_EQ(text.size() - first, 5u) << "its number, and a float";
+}
+
+TEST(TakeText, TicksComeBack) {
+  TakeTick tick;
+  tick.running = true;
+  tick.runs = {{TakeRun::Kind::scene, true, false, 3, "other.lua"}, {TakeRun::Kind::rerun, false, true, 0, ""}};
+  tick.stopped = {{12, "scripts/a.lua", 7, "stopped"}};
+  tick.tick = 100000;
+  tick.motion = 0xfedcba9876543210u;
+  tick.state = 5;
+  tick.first_body = 32;
+  tick.bodies = {1, 65535};
+  std::string messages;
+  TakeBytes out(messages);
+  TakeForms forms;
+  forms.write(out, message("/a", 1), {});
+  std::string text;
+  append_tick(text, tick, 1, messages);
+  TakeTick again;
+  TakeForms read;
+  ASSERT_TRUE(read_tick(text, read, again));
+  ASSERT_EQ(again.runs.size(), 2u);
+  EXPECT_EQ(again.runs[0].scene, "other.lua");
+  EXPECT_TRUE(again.runs[0].good && !again.runs[1].good && again.runs[1].again);
+  EXPECT_EQ(again.messages.size(), 1u);
+  ASSERT_EQ(again.stopped.size(), 1u);
+  EXPECT_EQ(again.stopped[0].number, 12u);
+  EXPECT_EQ(again.stopped[0].line, 7);
+  EXPECT_EQ(again.tick, tick.tick);
+  EXPECT_EQ(again.motion, tick.motion);
+  EXPECT_EQ(again.state, tick.state);
+  EXPECT_EQ(again.bodies, tick.bodies);
+  for (std::size_t size = 0; size < text.size(); size++) {
+    TakeForms fresh;
+    EXPECT_FALSE(read_tick(text.substr(0, size), fresh, again)) << size;
+  }
+}
+
+TEST(TakeText, HeadsOfNewerOnesAreRefusedByVersion) {
+  TakeHeader header;
+  header.scene = "a \"b\".lua";
+  const std::string text = head_text(header);
+  const std::size_t line = text.find('\n');
+  const Result<TakeHeader> read = header_of(text.substr(0, line), text.substr(line + 1));
+  ASSERT_TRUE(read.ok());
+  EXPECT_EQ(read->scene, header.scene);
+  const Result<TakeHeader> newer = header_of("limber take 2", "{}");
+  ASSERT_FALSE(newer.ok());
+  EXPECT_NE(newer.error().find("version 2"), std::string::npos);
+  EXPECT_FALSE(header_of("limber presets 1", "{}").ok());
+  EXPECT_FALSE(header_of("limber take 1", "nothing").ok());
+}
+
+}  // namespace
+}  // namespace limber::engine_test

@@ -1,0 +1,175 @@
+// A show of everything that a take must hold (floods, reloads, spawned bodies, stopped scripts, morphs, another scene),
+// recorded by a seed; and its replay.
+#pragma once
+
+#include <thread>
+
+#include "base/random.h"
+#include "engine/edited.h"
+
+namespace limber::engine_test {
+
+inline constexpr const char* kTakenScene = R"(
+params { { "count", 2, min = 1, max = 3, rerun = true }, { "wind", 0.5, min = 0, max = 2 } }
+local tool = require "tool"
+sim:add_body("floor"):add_part("floor", sim:add_plane_shape("ground"))
+for i = 1, params.count do
+  local arm = sim:load_urdf("urdf/arm6.urdf", { name = "arm" .. i, position = vec3(i, 0, 0) })
+  arm:add_behavior("sway", "sway", { depth = tool.depth })
+  arm:add_behavior("random_force", "gust", { parts = "*" })
+end
+state.pushes = 0
+osc:on("/push", function(x)
+  state.pushes = state.pushes + 1
+  sim:body("arm1").parts[2]:apply_impulse(vec3(x, rng:uniform(-0.01, 0.01), params.wind / 100))
+end)
+osc:on("/loop", function(n)
+  sim.gravity = vec3(0, 0, n)
+  while n == n do end
+end)
+osc:on("/spawn", function(name) sim:body("arm1"):copy(name, { position = vec3(rng:uniform(2, 4), 2, 1) }) end)
+osc:on("/gone", function(name) if sim:find_body(name) then sim:body(name):remove() end end)
+sim:every(0.25, function() presets:store("now") end)
+--MORE
+)";
+inline constexpr const char* kTakenSway = R"(return behavior {
+  params = { { "depth", 0.4, min = 0, max = 1 }, { "hang", false } },
+  start = function(self) self.state.phase = 0 end,
+  step = function(self, dt)
+    while self.hang do end
+    self.state.phase = self.state.phase + dt * self.rng:uniform(0.5, 1.5)
+    for i, motor in ipairs(self.motors) do motor.target = self.depth * math.sin(self.state.phase + i) end
+  end,
+}
+)";
+inline constexpr const char* kTakenOther = R"(
+local ball = sim:add_sphere_shape("ball", 0.1)
+for i = 1, 5 do sim:add_body("ball" .. i):add_part("p", ball, { position = vec3(0.01 * i, 0, 0.3 * i) }) end
+osc:on("/push", function(x) sim:body("ball3").parts[1]:apply_impulse(vec3(x, 0, rng:uniform(0, 0.1))) end)
+)";
+
+/// The presets of a file beside a scene; a recall of one brings what the file said when it was read.
+inline std::string taken_presets(const std::string& path, const std::string& values) {
+  return fmt::format(R"({{"limber presets": 1, "presets": [{{"name": "filed", "values": {{"{}": {{{}}}}}}}]}})", path,
+                     values);
+}
+
+inline void lay_out(const ShowFolder& folder) {
+  namespace fs = std::filesystem;
+  const fs::path from = fs::path(LIMBER_SOURCE_DIR) / "urdf";
+  fs::create_directories(folder.path("urdf"));
+  fs::copy(from / "arm6.urdf", folder.path("urdf/arm6.urdf"));
+  fs::copy(from / "meshes", folder.path("urdf/meshes"), fs::copy_options::recursive);
+  folder.write("scripts/scene.lua", kTakenScene);
+  folder.write("scripts/other.lua", kTakenOther);
+  folder.write("scripts/scene.presets.json", taken_presets("/physics/body/arm1/behavior/sway", "\"depth\": 0.75"));
+  folder.write("scripts/other.presets.json", taken_presets("/physics/body/ball2/part/p", "\"linear_damping\": 0.5"));
+  folder.write("scripts/lib/tool.lua", "return { depth = 0.3 }\n");
+  folder.write("behaviors_lua/sway.lua", kTakenSway);
+}
+
+inline EngineOptions taken_options(const ShowFolder& folder) {
+  EngineOptions options = fast_options(folder.path("scripts/scene.lua"));
+  options.scene_options.limits.call_ms = 8 * kBudgetScale;
+  options.scene_options.seed = 7;
+  return options;
+}
+
+/// Work of another thread that needs ticks to go on; their number is nobody's to say.
+template <class Work>
+void beside(Show& show, Work work) {
+  std::atomic<bool> done{false};
+  std::thread thread([&] {
+    work();
+    done.store(true);
+  });
+  while (!done.load()) show.ticks(1);
+  thread.join();
+}
+
+/// A line of a console.
+inline void evaluate(Show& show, const std::string& text) {
+  auto wish = std::make_shared<Evaluate>();
+  wish->text = text;
+  wish->answer = [](Evaluation) {};
+  show.link.inbox.push({{}, {Hand::console}, std::move(wish)});
+}
+
+/// What a performer may do, by chance; scripts that never end are among it.
+inline void play_wildly(Show& show, const ShowFolder& folder, int ticks, std::uint64_t seed) {
+  Random random(seed, "hands");
+  const auto some = [&](int n) { return static_cast<int>(random.uniform() * n); };
+  for (int i = 0; i < ticks; i++) {
+    for (int k = some(6); k > 0; k--) show.send("/push", random.uniform(-0.02, 0.02));
+    show.send("/physics/motor/angularspringstiffness", "arm1", random.uniform(0, 20));
+    if (some(20) == 0) show.send("/spawn", fmt::format("extra{}", some(4)));
+    if (some(30) == 0) show.send("/gone", fmt::format("extra{}", some(4)));
+    if (some(40) == 0) show.send("/preset/store", fmt::format("p{}", some(3)));
+    if (some(20) == 0) show.send("/preset/recall", fmt::format("p{}", some(3)), 0.3);
+    if (some(50) == 0) show.send("/preset/recall", "filed", 0.2);
+    if (some(20) == 0)
+      evaluate(show, fmt::format("sim:body('arm1').parts[3]:apply_impulse(rng:direction() * {})", 0.01));
+    if (some(60) == 0) evaluate(show, "sim.gravity.x = sim.nothing");
+    if (some(60) == 0) evaluate(show, "while true do end");
+    if (i % 70 == 11) show.send("/physics/behavior/parameter", "arm1", "sway", "hang", 1);
+    if (i % 70 == 25) {
+      show.send("/physics/behavior/parameter", "arm1", "sway", "hang", 0);
+      show.send("/physics/behavior/parameter", "arm1", "sway", "active", 1);
+    }
+    if (some(60) == 0) show.send("/scene/count", 1 + some(3));
+    if (some(90) == 0) show.send("/transport/reset");
+    if (some(60) == 0) show.send("/transport/step", 3);
+    if (some(30) == 0) show.send("/transport/play");
+    if (i % 50 == 17) show.send("/loop", i);
+    if (i % 60 == 31) {
+      folder.write("scripts/lib/tool.lua", fmt::format("return {{ depth = {} }}\n", 0.1 + 0.01 * some(30)));
+      beside(show, [&] { show.engine.reload(); });
+    }
+    show.ticks(1);
+  }
+}
+
+/// Records such a show; the hash at its end.
+inline std::uint64_t record_take(const ShowFolder& folder, const std::string& take, int ticks, std::uint64_t seed) {
+  log_to_stderr(false);
+  EngineOptions options = taken_options(folder);
+  options.record = take;
+  Show show(options);
+  play_wildly(show, folder, ticks, seed);
+  beside(show, [&] { EXPECT_TRUE(show.engine.change_scene(folder.path("scripts/other.lua")).ok()); });
+  for (int i = 0; i < ticks / 10; i++) {
+    show.send("/push", 0.01 * i);
+    if (i == 3) show.send("/preset/recall", "filed");
+    show.ticks(1);
+  }
+  EXPECT_EQ(show.read("/physics/body/ball2/part/p/linear_damping"), 0.5);
+  show.engine.end_take();
+  const std::uint64_t hash = show.engine.state_hash();
+  show.engine.finish_saving();
+  return hash;
+}
+
+struct Replayed {
+  TakeVerdict verdict;
+  std::uint64_t hash = 0;
+  std::string error;  ///< Why it did not begin.
+};
+
+inline Replayed replay_take(const std::string& take, bool current_scripts = false) {
+  log_to_stderr(false);
+  EngineLink link;
+  EngineOptions options = fast_options();
+  options.replay = take;
+  options.current_scripts = current_scripts;
+  Engine engine(link, options);
+  if (const Result<void> started = engine.start(); !started) return {{}, 0, started.error()};
+  engine.run();
+  return {engine.verdict(), engine.state_hash(), ""};
+}
+
+inline std::string take_bytes(const std::string& file) {
+  std::ifstream in(file, std::ios::binary);
+  return {std::istreambuf_iterator<char>(in), {}};
+}
+
+}  // namespace limber::engine_test
