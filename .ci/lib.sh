@@ -1,6 +1,9 @@
 # shellcheck shell=bash disable=SC2046,SC2086,SC2013,SC2154
 # Words that ./run and ./check share: saying, refusing, finding and installing packages. Sourced by bash in the root.
 
+# the packages that were installed from here, a line each, so that they can go again
+brought=build/brought_packages.txt
+
 say() { printf '%s: %s\n' "$tool" "$*"; }
 
 # refuse CODE TEXT CURE: every refusal says what is wrong and what to do; 2: wrong usage, 3: the machine is at fault
@@ -85,6 +88,7 @@ install_packages() {
       "mend what apt says above, or install by hand: apt-get install $packages"
   fi
   rm -f "$log"
+  mkdir -p build 2>/dev/null && printf '%s\n' $packages >>"$brought" 2>/dev/null || true
 }
 
 # finds what is missing and installs it; says nothing and calls no apt when all is there

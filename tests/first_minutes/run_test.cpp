@@ -33,7 +33,7 @@ class Machine {
     root_ = ::mkdtemp(pattern.data());
     fs::create_directories(root_ / "bin");
     fs::create_directories(root_ / "tree/.ci");
-    for (const char* file : {"run", ".ci/lib.sh", ".ci/packages"}) {
+    for (const char* file : {"run", ".ci/lib.sh", ".ci/uninstall.sh", ".ci/packages"}) {
       fs::copy_file(fs::path(LIMBER_SOURCE_DIR) / file, root_ / "tree" / file);
     }
     for (const char* real : {"bash", "env", "dirname", "cut", "grep", "awk", "sed", "tee", "mktemp", "rm", "mkdir",
@@ -67,14 +67,16 @@ class Machine {
     fs::permissions(root_ / "bin" / name, fs::perms::owner_all);
   }
   void without(const std::string& name) const { fs::remove(root_ / "bin" / name); }
+  fs::path path(const std::string& name) const { return root_ / name; }
+  bool has(const std::string& name) const { return fs::exists(path(name)); }
   void nothing_installed() const { program("dpkg-query", "exit 1"); }
 
   Answer run(const std::string& arguments = "") const {
     const std::string root = root_.string();
     fs::remove(root_ / "calls");
     const std::string command = "cd " + root + "/tree && /usr/bin/env -i PATH=" + root + "/bin TMPDIR=" + root +
-                                " CALLS=" + root + "/calls LIMBER_OS_RELEASE=" + root + "/os-release ./run " +
-                                arguments + " </dev/null >" + root + "/out 2>&1";
+                                " HOME=" + root + "/home CALLS=" + root + "/calls LIMBER_OS_RELEASE=" + root +
+                                "/os-release ./run " + arguments + " </dev/null >" + root + "/out 2>&1";
     const int status = std::system(command.c_str());
     return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, read("out"), read("calls")};
   }
@@ -119,6 +121,28 @@ TEST(Run, InstallsWhatIsMissingAsRoot) {
   EXPECT_NE(answer.text.find("run: installing with apt: cmake libfmt-dev\n"), std::string::npos) << answer.text;
   EXPECT_NE(answer.calls.find("apt-get update"), std::string::npos);
   EXPECT_NE(answer.calls.find(" cmake libfmt-dev\n"), std::string::npos) << answer.calls;
+}
+
+TEST(Run, UninstallTakesBackWhatItMadeAndBrought) {
+  const Machine machine;
+  EXPECT_EQ(machine.run("--uninstall").text, "run: nothing of it is here\n");
+  machine.program("dpkg-query",
+                  "shift 2; for p in \"$@\"; do case $p in cmake|libfmt-dev) ;; *) echo \"ii $p \" ;; esac; done");
+  ASSERT_EQ(machine.run("--build-only").code, 0);
+  ASSERT_EQ(machine.run("--build-only").code, 0);
+  fs::create_directories(machine.path("home/.config/limber"));
+  fs::create_directories(machine.path("home/.config/others"));
+  machine.program("apt-get", "exit 100");
+  EXPECT_EQ(machine.run("--uninstall").code, 3);
+  EXPECT_TRUE(machine.has("tree/build")) << "what went wrong can be tried again";
+  machine.program("apt-get", "echo apt-get \"$@\" >>\"$CALLS\"");
+  const Answer answer = machine.run("--uninstall");
+  EXPECT_EQ(answer.code, 0) << answer.text;
+  EXPECT_EQ(answer.calls, "apt-get remove -y cmake libfmt-dev\n");
+  EXPECT_FALSE(machine.has("tree/build"));
+  EXPECT_FALSE(machine.has("home/.config/limber"));
+  EXPECT_TRUE(machine.has("home/.config/others"));
+  EXPECT_TRUE(machine.has("tree/run"));
 }
 
 TEST(Run, TriesOnForeignSystemsAndSaysSo) {
