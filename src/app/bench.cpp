@@ -16,6 +16,7 @@
 #include "app/bench_query.h"
 #include "app/bench_reload.h"
 #include "app/bench_spawn.h"
+#include "app/bench_take.h"
 #include "app/exit_code.h"
 #include "base/build_info.h"
 #include "base/text.h"
@@ -114,6 +115,7 @@ const std::vector<BenchScene>& bench_scenes() {
       {"reload", "a scene saved while it plays: how soon the new one is in force, and what its ticks feel of it",
        &bench_reload},
       {"preset", "presets of every property of 1000 arms: stored, recalled, glided to", &bench_preset},
+      {"take", "16 arms and 1000 messages a second: what a take costs, and its replay", &bench_take},
       {"osc-in", "messages a second from a socket into rows; a burst of 10 000", &bench_osc_in},
       {"osc-latency", "from message to answer: /ping, and a value in force", &bench_osc_latency},
       {"osc-out", "frames of 1000 bodies in three streams", &bench_osc_out},

@@ -2,9 +2,6 @@
 // and the gaps between ticks are seen from outside.
 #include "app/bench_reload.h"
 
-#include <unistd.h>
-
-#include <filesystem>
 #include <fstream>
 #include <string>
 #include <thread>
@@ -12,6 +9,7 @@
 
 #include <fmt/format.h>
 
+#include "app/bench_folder.h"
 #include "app/bench_times.h"
 #include "app/paths.h"
 #include "app/scene_watch.h"
@@ -20,8 +18,6 @@
 namespace limber {
 
 namespace {
-
-namespace fs = std::filesystem;
 
 constexpr const char* kScene = R"(
 local arm = sim:load_urdf("{0}/urdf/{1}.urdf", {{ name = "arm" }})
@@ -33,25 +29,7 @@ sim:on_step(function()
 end)
 )";
 
-// the bench's own folder in the system's place for such
-class Folder {
- public:
-  Folder() : path_(fs::temp_directory_path() / fmt::format("limber_bench_{}", ::getpid())) {
-    fs::create_directories(path_ / "scripts");
-  }
-  ~Folder() {
-    std::error_code ignored;
-    fs::remove_all(path_, ignored);
-  }
-  Folder(const Folder&) = delete;
-  Folder& operator=(const Folder&) = delete;
-  std::string scene() const { return (path_ / "scripts" / "scene.lua").string(); }
-
- private:
-  fs::path path_;
-};
-
-void save(const Folder& folder, std::string_view robot, int arms, int version) {
+void save(const BenchFolder& folder, std::string_view robot, int arms, int version) {
   std::ofstream(folder.scene()) << fmt::format(kScene, data_dir(), robot, arms, 0.001 * version, version);
 }
 
@@ -117,7 +95,7 @@ nlohmann::ordered_json milliseconds(const Samples& samples) {
 }
 
 nlohmann::ordered_json reload(std::string_view robot, int arms, int saves) {
-  const Folder folder;
+  const BenchFolder folder;
   save(folder, robot, arms, 0);
   Played played(folder.scene());
   if (!played.started()) return {{"fault", played.started().error()}};

@@ -76,21 +76,23 @@ CLI::Validator whole_number() {
 
 CLI::App* add_play(CLI::App& app, PlayOptions& o) {
   CLI::App* play = app.add_subcommand("play", "play a scene (the default command)");
-  play->add_option("scene", o.scene, "the scene's file; left out: scripts/arms.lua")->type_name("SCENE.lua");
+  CLI::Option* scene =
+      play->add_option("scene", o.scene, "the scene's file; left out: scripts/arms.lua")->type_name("SCENE.lua");
   add_picture_options(*play, o.picture);
   play->add_flag("--fast", o.fast, "as fast as it can instead of in real time; no OSC, no OSCQuery unless asked for");
   play->add_option("--duration,--seconds", o.duration, "end at that simulated time")
       ->type_name("S")
       ->check(positive_time());
   play->add_option("--ticks", o.ticks, "end after so many ticks")->type_name("N")->check(whole_number());
-  play->add_option("--seed", o.seed, "seed of everything random; wins over sim.seed of the scene")
-      ->type_name("N")
-      ->check(whole_number());
-  play->add_option("--set", o.sets, "set a value after the scene ran; a path or the seed's address")
-      ->type_name("PATH=VALUE")
-      ->allow_extra_args(false);
-  play->add_option("--preset", o.preset, "begin with this preset of the scene's, before what --set says")
-      ->type_name("NAME");
+  CLI::Option* seed = play->add_option("--seed", o.seed, "seed of everything random; wins over sim.seed of the scene")
+                          ->type_name("N")
+                          ->check(whole_number());
+  CLI::Option* sets = play->add_option("--set", o.sets, "set a value after the scene ran; a path or the seed's address")
+                          ->type_name("PATH=VALUE")
+                          ->allow_extra_args(false);
+  CLI::Option* preset =
+      play->add_option("--preset", o.preset, "begin with this preset of the scene's, before what --set says")
+          ->type_name("NAME");
   play->add_option("--osc-in", o.osc_in, "where OSC comes in; default 127.0.0.1:9003")->type_name("[ADDR:]PORT|off");
   play->add_option("--osc-allow", o.osc_allow, "only these senders, such as 192.168.1.0/24")->type_name("CIDR,...");
   play->add_option("--osc-out", o.osc_out,
@@ -116,7 +118,11 @@ CLI::App* add_play(CLI::App& app, PlayOptions& o) {
   CLI::Option* replay =
       play->add_option("--replay", o.replay, "play that take again, with the scene and files that it holds")
           ->type_name("TAKE")
-          ->excludes(record);
+          ->excludes(record)
+          ->excludes(scene)
+          ->excludes(seed)
+          ->excludes(sets)
+          ->excludes(preset);
   play->add_flag("--with-current-scripts", o.current_scripts,
                  "with --replay, the scene as it is on the disk now; tells where the runs part")
       ->needs(replay);

@@ -29,12 +29,13 @@ class Moments {
     before_ = now_ = link.snapshots.read();
   }
 
-  enum class Went : std::uint8_t { there, stuck, cancelled };
-  /// Ticks until there. `stuck`: time stands still.
+  enum class Went : std::uint8_t { there, stuck, ended, cancelled };
+  /// Ticks until there. `stuck`: time stands still; `ended`: the take that is replayed goes no further.
   Went go_to(double seconds) {
     int idle = 0;  // ticks without time
     while (elapsed_ < seconds - 1e-9) {
       if (cancel_()) return Went::cancelled;
+      if (engine_.replays() && engine_.replay_over()) return Went::ended;
       before_ = now_;
       before_tick_();
       engine_.tick();
@@ -43,7 +44,8 @@ class Moments {
       // after a reset time begins anew; the film goes on
       const double step = now_->time >= before_->time ? now_->time - before_->time : now_->time;
       idle = step > 0 ? 0 : idle + 1;
-      if (idle > 0 && (now_->paused || idle > kMostIdle)) return Went::stuck;
+      const bool waits = now_->paused && !engine_.replays();
+      if (idle > 0 && (waits || idle > kMostIdle)) return Went::stuck;
       elapsed_before_ = elapsed_;
       elapsed_ += step;
     }
@@ -161,6 +163,7 @@ Rendered draw_film(const PictureOptions& options, const PictureSize& size, Rende
     const Moments::Went went = moments.go_to(at);
     if (went == Moments::Went::stuck)
       return failed(kInput, fmt::format("time stands still: the scene is paused at {:.2f} s", at));
+    if (went == Moments::Went::ended) break;
     if (went == Moments::Went::cancelled || cancel()) {
       cancelled = true;
       break;
@@ -173,7 +176,10 @@ Rendered draw_film(const PictureOptions& options, const PictureSize& size, Rende
   }
   if (const auto whole = (*film)->finish(); !whole) return failed(kMachine, whole.error());
   fmt::print(stderr, "limber: {}: {} frames, {} × {}, {} a second{}\n", printable(options.render), done, size.width,
-             size.height, number_text(fps), done < frames ? fmt::format("; cancelled, {} were asked for", frames) : "");
+             size.height, number_text(fps),
+             done < frames
+                 ? fmt::format("; {}, {} were asked for", cancelled ? "cancelled" : "the take has ended", frames)
+                 : "");
   // to the end, as a run of that duration goes
   if (cancelled) return {kFine, true};
   const Moments::Went went = moments.go_to(duration);

@@ -88,6 +88,8 @@ class Engine : private ScriptHost {
   /// Whether a take is replayed, and what came of it so far.
   bool replays() const { return player_ != nullptr; }
   TakeVerdict verdict() const { return player_->verdict(); }
+  /// Nothing more comes of it. [sim]
+  bool replay_over() const { return player_->over(); }
   /// World, scene and generators. [sim]
   std::uint64_t state_hash() const;
   /// Script errors and refused values so far, health events: what `--strict` asks for. [sim]

@@ -71,13 +71,19 @@ void TakeWriter::write(std::string_view frames) {
 }
 
 void TakeWriter::write(TakeBegin begin) {
-  const std::scoped_lock lock(mutex_);
-  jobs_.push_back({bytes_.size(), std::move(begin), std::nullopt});
+  {
+    const std::scoped_lock lock(mutex_);
+    jobs_.push_back({bytes_.size(), std::move(begin), std::nullopt});
+  }
+  changed_.notify_all();
 }
 
 void TakeWriter::write(TakeFiles files) {
-  const std::scoped_lock lock(mutex_);
-  jobs_.push_back({bytes_.size(), std::nullopt, std::move(files)});
+  {
+    const std::scoped_lock lock(mutex_);
+    jobs_.push_back({bytes_.size(), std::nullopt, std::move(files)});
+  }
+  changed_.notify_all();
 }
 
 void TakeWriter::close() {
@@ -201,7 +207,7 @@ void TakeWriter::run() {
     jobs.clear();
     {
       std::unique_lock lock(mutex_);
-      changed_.wait_for(lock, kEvery, [this] { return end_ || bytes_.size() >= kSoon; });
+      changed_.wait_for(lock, kEvery, [this] { return end_ || !jobs_.empty() || bytes_.size() >= kSoon; });
       end = end_;
       full = full_;
       bytes.swap(bytes_);

@@ -57,6 +57,17 @@ TEST(Bench, TheSameSceneHasTheSameHashWhateverRunsBeside) {
   EXPECT_NE(alone["hash"], longer["hash"]);
 }
 
+TEST(Bench, RecordsAndReplaysATake) {
+  BenchOptions options;
+  options.ticks = 20;
+  const Json figures = figures_of("take", options);
+  EXPECT_EQ(figures["ticks"], 20);
+  EXPECT_EQ(figures["messages_per_tick"], 17);
+  EXPECT_GT(figures["mb_per_minute"], 0.1);
+  EXPECT_GT(figures["recording_percent_of_tick"], 0);
+  EXPECT_GT(figures["replayed_by_played"], 0);
+}
+
 TEST(Bench, PrintsJsonForMachines) {
   testing::internal::CaptureStdout();
   const int code = bench_command({{"arms-1", "arm-quality"}, false, true, 3});

@@ -1,5 +1,8 @@
 // Takes by the command line: recorded, told of, replayed, also after a kill.
+#include <filesystem>
+
 #include "app/program.h"
+#include "base/random.h"
 
 namespace limber::app_test {
 namespace {
@@ -69,6 +72,51 @@ TEST(TakeApp, AKilledShowPlaysToItsLastWholeTick) {
   EXPECT_EQ(again.code, 0) << again.err;
   EXPECT_NE(again.err.find("every hash is the take's; the take was cut off there\n"), std::string::npos) << again.err;
   EXPECT_NE(run({"take", "info", take}).out.find("end       cut off behind tick "), std::string::npos);
+}
+
+TEST(TakeApp, KilledAtAnyMomentItPlaysToItsLastWholeTick) {
+  Random random(1, "kills");
+  for (int i = 0; i < 8; i++) {
+    const Folder folder;
+    const std::string scene =
+        folder.file("s.lua", std::string(kTakeScene) + "sim:on_step(function() print('at ' .. sim.tick) end)\n");
+    const std::string take = folder.path() + "/s.take";
+    const auto wanted = static_cast<std::uintmax_t>(random.uniform(4000, 120000));
+    Running running(limber({scene, "--fast", "--record", take}));
+    // the moment is the file's: so many bytes are on the disk
+    std::error_code none;
+    for (int at = 0; !std::filesystem::exists(take, none) || std::filesystem::file_size(take) < wanted; at += 400)
+      ASSERT_TRUE(running.wait_for(fmt::format("at {}\n", at), true)) << running.err();
+    running.signal(SIGKILL);
+    running.finish();
+    const Ran info = run({"take", "info", take});
+    EXPECT_EQ(info.code, 0) << info.err;
+    const std::string last = last_line(info.out, "end       cut off behind tick ");
+    ASSERT_FALSE(last.empty()) << info.out;
+    const std::string ticks = last.substr(30, last.find(',') - 30);
+    EXPECT_GT(std::stoi(ticks), 0) << last;
+    const Ran again = run({"--replay", take, "--fast"});
+    EXPECT_EQ(again.code, 0) << again.err;
+    EXPECT_NE(again.err.find("replayed " + ticks + " ticks: every hash is the take's; the take was cut off there\n"),
+              std::string::npos)
+        << again.err;
+  }
+}
+
+TEST(TakeApp, ADiskThatTakesNoMoreEndsTheTakeAndNotTheShow) {
+  const Folder folder;
+  const std::string scene = folder.file("s.lua", kTakeScene);
+  const std::string take = folder.path() + "/s.take";
+  const std::string command =
+      fmt::format("ulimit -f 8; exec {} {} --fast --ticks 3000 --record {}", LIMBER_PROGRAM, scene, take);
+  const Ran recorded = Running({"/bin/sh", "-c", command}).finish();
+  EXPECT_EQ(recorded.code, 0) << recorded.err;
+  EXPECT_NE(recorded.err.find("s.take: the take ends here, the disk takes no more: File too large\n"),
+            std::string::npos)
+      << recorded.err;
+  const Ran again = run({"--replay", take, "--fast"});
+  EXPECT_EQ(again.code, 0) << again.err;
+  EXPECT_NE(again.err.find("every hash is the take's; the take was cut off there\n"), std::string::npos) << again.err;
 }
 
 }  // namespace

@@ -18,6 +18,7 @@ for i = 1, params.count do
   arm:add_behavior("sway", "sway", { depth = tool.depth })
   arm:add_behavior("random_force", "gust", { parts = "*" })
 end
+if tool.more then sim:load_urdf("urdf/bead.urdf", { name = "bead", position = vec3(0, 3, 1) }) end
 state.pushes = 0
 osc:on("/push", function(x)
   state.pushes = state.pushes + 1
@@ -32,6 +33,11 @@ osc:on("/gone", function(name) if sim:find_body(name) then sim:body(name):remove
 sim:every(0.25, function() presets:store("now") end)
 --MORE
 )";
+// a run that reads another set of models than the one before
+inline constexpr const char* kTakenBead = R"(<robot name="bead"><link name="bead">
+  <inertial><mass value="1"/><inertia ixx="1" iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/></inertial>
+  <collision><geometry><sphere radius="0.1"/></geometry></collision>
+</link></robot>)";
 inline constexpr const char* kTakenSway = R"(return behavior {
   params = { { "depth", 0.4, min = 0, max = 1 }, { "hang", false } },
   start = function(self) self.state.phase = 0 end,
@@ -60,6 +66,7 @@ inline void lay_out(const ShowFolder& folder) {
   fs::create_directories(folder.path("urdf"));
   fs::copy(from / "arm6.urdf", folder.path("urdf/arm6.urdf"));
   fs::copy(from / "meshes", folder.path("urdf/meshes"), fs::copy_options::recursive);
+  folder.write("urdf/bead.urdf", kTakenBead);
   folder.write("scripts/scene.lua", kTakenScene);
   folder.write("scripts/other.lua", kTakenOther);
   folder.write("scripts/scene.presets.json", taken_presets("/physics/body/arm1/behavior/sway", "\"depth\": 0.75"));
@@ -122,7 +129,8 @@ inline void play_wildly(Show& show, const ShowFolder& folder, int ticks, std::ui
     if (some(30) == 0) show.send("/transport/play");
     if (i % 50 == 17) show.send("/loop", i);
     if (i % 60 == 31) {
-      folder.write("scripts/lib/tool.lua", fmt::format("return {{ depth = {} }}\n", 0.1 + 0.01 * some(30)));
+      folder.write("scripts/lib/tool.lua",
+                   fmt::format("return {{ depth = {}, more = {} }}\n", 0.1 + 0.01 * some(30), i % 120 == 31));
       beside(show, [&] { show.engine.reload(); });
     }
     show.ticks(1);

@@ -51,6 +51,30 @@ TEST(ModelLibrary, ChangedFilesAreImportedAnew) {
   EXPECT_EQ((*urdf_changed)->name, "new");
 }
 
+TEST(ModelLibrary, TheSameContentIsTheSameWhoeverReadIt) {
+  const test::Files files;
+  files.write("m.stl", test::binary_stl(test::box({1, 1, 1})));
+  const std::string path = files.write("r.urdf", kRobot);
+  const auto content = [](const std::string& file, const ImportOptions& options = {}) {
+    ModelLibrary library;
+    const auto model = library.load_urdf(file, options);
+    EXPECT_TRUE(model.ok());
+    return model ? (*model)->content : 0;
+  };
+  const std::uint64_t first = content(path);
+  EXPECT_EQ(content(path), first);
+  ImportOptions free;
+  free.fixed_base = false;
+  EXPECT_NE(content(path, free), first);
+  files.write("m.stl", test::binary_stl(test::cylinder(1, 1, 8)));
+  const std::uint64_t other_mesh = content(path);
+  EXPECT_NE(other_mesh, first);
+  files.write("m.stl", test::binary_stl(test::box({1, 1, 1})));
+  EXPECT_EQ(content(path), first);
+  const test::Files elsewhere;  // where its mesh is not
+  EXPECT_NE(content(elsewhere.write("r.urdf", kRobot)), first);
+}
+
 TEST(ModelLibrary, ManyThreadsGetOneModel) {
   const test::Files files;
   files.write("m.stl", test::binary_stl(test::capsule(1, 1, 64)));

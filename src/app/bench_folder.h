@@ -1,0 +1,32 @@
+// BenchFolder: a show's folder of the bench's own, in the system's place for such; it goes when the bench is over.
+#pragma once
+
+#include <unistd.h>
+
+#include <filesystem>
+#include <string>
+
+#include <fmt/format.h>
+
+namespace limber {
+
+class BenchFolder {
+ public:
+  BenchFolder() : path_(std::filesystem::temp_directory_path() / fmt::format("limber_bench_{}", ::getpid())) {
+    std::filesystem::create_directories(path_ / "scripts");
+  }
+  ~BenchFolder() {
+    std::error_code ignored;
+    std::filesystem::remove_all(path_, ignored);
+  }
+  BenchFolder(const BenchFolder&) = delete;
+  BenchFolder& operator=(const BenchFolder&) = delete;
+
+  std::string scene() const { return (path_ / "scripts" / "scene.lua").string(); }
+  std::string file(const std::string& name) const { return (path_ / name).string(); }
+
+ private:
+  std::filesystem::path path_;
+};
+
+}  // namespace limber

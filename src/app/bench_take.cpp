@@ -1,0 +1,140 @@
+// A show that is played, recorded and replayed by turns.
+#include "app/bench_take.h"
+
+#include <filesystem>
+#include <fstream>
+
+#include <fmt/format.h>
+
+#include "app/bench_folder.h"
+#include "app/bench_times.h"
+#include "app/paths.h"
+#include "base/check.h"
+#include "base/log.h"
+#include "base/random.h"
+
+namespace limber {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr int kArms = 16;
+constexpr int kMessages = 17;  // a tick: 1000 a second
+constexpr int kTakes = 3;
+
+constexpr const char* kTakenArms = R"(
+local arm = sim:load_urdf("{0}/urdf/arm17.urdf", {{ name = "arm1" }})
+for i = 2, {1} do arm:copy("arm" .. i, {{ position = vec3(2 * (i % 8), 2 * math.floor(i / 8), 0) }}) end
+)";
+
+EngineOptions taken_show(const BenchFolder& folder) {
+  EngineOptions options;
+  options.scene = folder.scene();
+  options.fast = true;
+  return options;
+}
+
+// messages of one number, as a performer's sliders send them
+void push_messages(EngineLink& link, Random& random) {
+  for (int i = 0; i < kMessages; i++) {
+    const int arm = 1 + static_cast<int>(random.uniform() * kArms);
+    const std::string address = fmt::format("/physics/body/arm{}/motor/joint_{}/angular_servo_position", arm, i + 1);
+    const auto angle = static_cast<double>(static_cast<float>(random.uniform(-0.5, 0.5)));
+    link.inbox.push({{{address, {Arg::of(angle)}}}, {Hand::osc, 0x7f000001, 4000}});
+  }
+}
+
+// the processor's seconds of so many ticks of a show; recorded where `take` is not empty
+double play_taken(const BenchFolder& folder, int ticks, const std::string& take) {
+  EngineLink link;
+  EngineOptions options = taken_show(folder);
+  options.record = take;
+  Engine engine(link, options);
+  LIMBER_CHECK(engine.start().ok());
+  Random random(1, "sliders");
+  double seconds = 0;
+  for (int i = 0; i < ticks; i++) {
+    push_messages(link, random);
+    const double start = thread_seconds();
+    engine.tick();
+    seconds += thread_seconds() - start;
+  }
+  LIMBER_CHECK(link.counters.refused.load() == 0);
+  engine.end_take();
+  engine.finish_saving();
+  return seconds;
+}
+
+double replay_taken(const BenchFolder& folder, const std::string& take) {
+  EngineLink link;
+  EngineOptions options = taken_show(folder);
+  options.replay = take;
+  Engine engine(link, options);
+  LIMBER_CHECK(engine.start().ok());
+  const double start = thread_seconds();
+  engine.run();
+  const double seconds = thread_seconds() - start;
+  LIMBER_CHECK(!engine.verdict().parted);
+  return seconds;
+}
+
+// what the recorder does in a tick, by itself, beside the tick of the same show
+struct Recording {
+  double tick = 0, recorder = 0, bytes = 0;
+};
+
+Recording record_beside(const BenchFolder& folder, int ticks) {
+  EngineLink link;
+  Engine engine(link, taken_show(folder));
+  LIMBER_CHECK(engine.start().ok());
+  const std::string file = folder.file("beside.take");
+  TakeRecorder recorder({file, false}, {}, [](const std::string&) {});
+  LIMBER_CHECK(recorder.opened().ok());
+  const auto head = static_cast<double>(std::filesystem::file_size(file));
+  Random random(1, "sliders");
+  std::vector<Command> commands;
+  Recording sum;
+  CallLedger calls;
+  for (int i = 0; i < ticks; i++) {
+    push_messages(link, random);
+    link.inbox.drain(commands);
+    for (const Command& command : commands) link.inbox.push(command);
+    double start = thread_seconds();
+    engine.tick();
+    sum.tick += thread_seconds() - start;
+    start = thread_seconds();
+    for (const Command& command : commands) recorder.message(command.messages[0], command.origin);
+    recorder.end_tick(true, engine.world(), calls, [&] { return engine.state_hash(); });
+    sum.recorder += thread_seconds() - start;
+  }
+  recorder.finish({}).reset();
+  sum.bytes = static_cast<double>(std::filesystem::file_size(file)) - head;
+  return sum;
+}
+
+}  // namespace
+
+Json bench_take(const BenchOptions& options) {
+  const int ticks = options.ticks > 0 ? options.ticks : 600;
+  const BenchFolder folder;
+  std::ofstream(folder.scene()) << fmt::format(kTakenArms, data_dir(), kArms);
+  const Recording recording = record_beside(folder, ticks);
+  Samples shows, recorded, replays;
+  for (int i = 0; i < kTakes; i++) {
+    const std::string take = folder.file(fmt::format("{}.take", i));
+    shows.add(play_taken(folder, ticks, ""));
+    recorded.add(play_taken(folder, ticks, take));
+    replays.add(replay_taken(folder, take));
+  }
+  return {{"ticks", ticks},
+          {"messages_per_tick", kMessages},
+          {"tick_us", rounded(recording.tick / ticks * 1e6, 1)},
+          {"recording_us", rounded(recording.recorder / ticks * 1e6, 2)},
+          {"recording_percent_of_tick", rounded(100 * recording.recorder / recording.tick, 2)},
+          {"mb_per_minute", rounded(recording.bytes / ticks * 3600 / 1e6, 3)},
+          {"recorded_by_played", rounded(recorded.at(0) / shows.at(0), 3)},
+          {"replayed_by_played", rounded(replays.at(0) / shows.at(0), 3)}};
+}
+
+}  // namespace limber
