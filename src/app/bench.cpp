@@ -12,6 +12,7 @@
 #include "app/bench_flock.h"
 #include "app/bench_lua.h"
 #include "app/bench_osc.h"
+#include "app/bench_panel.h"
 #include "app/bench_preset.h"
 #include "app/bench_query.h"
 #include "app/bench_reload.h"
@@ -119,6 +120,7 @@ const std::vector<BenchScene>& bench_scenes() {
       {"osc-in", "messages a second from a socket into rows; a burst of 10 000", &bench_osc_in},
       {"osc-latency", "from message to answer: /ping, and a value in force", &bench_osc_latency},
       {"osc-out", "frames of 1000 bodies in three streams", &bench_osc_out},
+      {"panel", "a frame of the panel beside 1000 arms, without drawing it", &bench_panel},
       {"query", "16 arms while 100 WebSocket clients listen to 50 values each, and alone", &bench_query},
   };
   return scenes;

@@ -32,6 +32,12 @@ std::vector<std::string> behavior_types() {
 
 }  // namespace
 
+FreePart free_part(const Gui& gui, int width, int height) {
+  const PanelRect& free = gui.layout().free;
+  if (gui.settings().hidden || free.empty()) return {};
+  return {free.x / width, free.y / height, free.width / width, free.height / height};
+}
+
 GuiOptions panel_options(Window* window) {
   GuiOptions options;
   options.behavior_types = behavior_types();

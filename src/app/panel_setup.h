@@ -2,10 +2,14 @@
 #pragma once
 
 #include "gui/gui.h"
+#include "view/lens.h"
 
 namespace limber {
 
 class Window;
+
+/// What of a picture of that size the panel leaves free. [main]
+FreePart free_part(const Gui& gui, int width, int height);
 
 /// `window`: whose clipboard it uses; null: none. It outlives the panel. [main]
 GuiOptions panel_options(Window* window);

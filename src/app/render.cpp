@@ -108,6 +108,7 @@ class StillPanel {
     frame_.clock += 1.0 / 60;
     gui_.frame(frame_);
   }
+  FreePart free() const { return free_part(gui_, static_cast<int>(frame_.width), static_cast<int>(frame_.height)); }
   void draw_over(const Renderer& renderer) {
     const std::uint64_t ask = link_.ask_image();
     const auto late = [&] {
@@ -138,7 +139,9 @@ Rendered draw_still(const PictureOptions& options, const PictureSize& size, Rend
   const Moments::Went went = moments.go_to(at);
   if (went == Moments::Went::cancelled) return {kFine, true};
   if (went == Moments::Went::stuck) return failed(kInput, "time stands still: the scene is paused before --at");
-  if (const auto drawn = renderer.draw(moments.before(), moments.now(), moments.mix(at), size.width, size.height);
+  if (panel) panel->frame();
+  const FreePart free = panel ? panel->free() : FreePart{};
+  if (const auto drawn = renderer.draw(moments.before(), moments.now(), moments.mix(at), size.width, size.height, free);
       !drawn)
     return failed(kMachine, drawn.error());
   if (panel) panel->draw_over(renderer);

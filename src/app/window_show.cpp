@@ -110,26 +110,63 @@ void WindowShow::look_from(const Orbit& orbit) {
 
 // the panel first: what is not its own is the picture's
 void WindowShow::hear_hands(int width, int height, double now) {
-  for (const InputEvent& event : window_->take_events()) gui_->push(event);
+  const std::vector<InputEvent> events = window_->take_events();
+  for (const InputEvent& event : events) gui_->push(event);
   gui_->frame({static_cast<double>(width), static_cast<double>(height), window_->content_scale() * panel_scale_, now});
   for (const HotkeyAction action : gui_->take_actions()) {
     if (action == HotkeyAction::full_screen) window_->toggle_full_screen();
-    if (action == HotkeyAction::home_view) look_from(home_);
+    if (action != HotkeyAction::home_view) continue;
+    hand_.follow_nothing();
+    look_from(home_);
+  }
+  Desk& desk = gui_->desk();
+  if (desk.image != nullptr) {
+    const HandView view{*now_, *desk.image, lens_of(camera_of(*now_), width, height, free_part(*gui_, width, height)),
+                        width, height,      now};
+    for (const InputEvent& event : events) {
+      const bool release = event.kind == InputEvent::Kind::button && !event.down;
+      if (release || event.kind == InputEvent::Kind::move || !gui_->wants_mouse()) hand_.event(event, view);
+    }
+    hand_.frame(view);
+    if (std::vector<Message> messages = hand_.take_messages(); !messages.empty()) send(std::move(messages));
+    if (std::string chosen = hand_.take_chosen(); !chosen.empty()) desk.choose(std::move(chosen));
+    desk.mark.reset();
+    if (const auto mark = hand_.mark(view)) desk.mark = {mark->x, mark->y, mark->to_x, mark->to_y, mark->name};
   }
   hear_mouse();
+  follow();
+}
+
+void WindowShow::follow() {
+  if (!hand_.followed() || *hand_.followed() >= now_->live.size()) {
+    hand_.follow_nothing();
+    follows_.reset();
+    return;
+  }
+  const Vec3 at = part_pose(*now_, *hand_.followed()).position;
+  if (follows_ != hand_.followed()) {
+    follows_ = hand_.followed();
+    const Orbit orbit = orbit_of(camera_of(*now_));
+    follows_from_ = orbit.eye - orbit.target;
+  }
+  look_from({at + follows_from_, at});
 }
 
 void WindowShow::hear_mouse() {
   const MouseMoves mouse = window_->take_mouse();
-  if (!mouse.any() || gui_->wants_mouse()) return;
+  if (!mouse.any() || gui_->wants_mouse() || hand_.holds()) return;
   const CameraView camera = camera_of(*now_);
   const double now = clock_seconds();
   if (now - moved_ > kHandStays) orbit_ = orbit_of(camera);
   moved_ = now;
-  const double height = std::max(window_->height(), 1);
+  // of the part that the camera's picture fills
+  const double height = std::max(window_->height(), 1) *
+                        free_part(*gui_, std::max(window_->width(), 1), std::max(window_->height(), 1)).height;
   orbit_.turn(kTurn * mouse.turn_x / height, kTurn * mouse.turn_y / height);
   orbit_.shift(mouse.shift_x / height, -mouse.shift_y / height, camera.fovy);
   orbit_.zoom(std::pow(kWheel, mouse.wheel));
+  if (mouse.shift_x != 0 || mouse.shift_y != 0) hand_.follow_nothing();
+  follows_from_ = orbit_.eye - orbit_.target;
   look_from(orbit_);
 }
 
@@ -170,7 +207,8 @@ WindowShow::End WindowShow::frame() {
   }
   hear_hands(width, height, now);
   const double mix = interval_ <= 0 ? 1 : std::clamp((now - came_) / interval_, 0.0, 1.0);
-  if (const Result<void> drawn = renderer_->draw(*before_, *now_, mix, width, height); !drawn) {
+  if (const Result<void> drawn = renderer_->draw(*before_, *now_, mix, width, height, free_part(*gui_, width, height));
+      !drawn) {
     log_error("{}; playing on headless", drawn.error());
     return End::lost;
   }

@@ -4,6 +4,7 @@
 #include <memory>
 #include <string>
 
+#include "app/picture_hand.h"
 #include "app/picture_options.h"
 #include "app/window.h"
 #include "engine/link.h"
@@ -37,12 +38,16 @@ class WindowShow {
   void look_at_snapshots(double now);
   void look_from(const Orbit& orbit);
   void hear_hands(int width, int height, double now);
+  void follow();
   void hear_mouse();
   void send(std::vector<Message> messages);
   void tell_rate(double now);
 
   std::unique_ptr<Window> window_;
   std::unique_ptr<Renderer> renderer_;  // before its context goes
+  PictureHand hand_;
+  std::optional<std::uint32_t> follows_;  // what of hand_.followed() is followed already
+  Vec3 follows_from_{0};                  // the eye, as seen from what is followed
   std::string settings_file_;
   PanelSettings kept_;        // as they are in the file
   double panel_scale_ = 1;    // of the panel, beside the screen's own

@@ -23,6 +23,10 @@ std::array<const Table*, 6> named_classes() {
 constexpr Irregular kIrregulars[] = {
     {"/physics/part/force", "[body] [part] x y z [rx ry rz]",
      "Force in N for one tick, world axes; rx ry rz: where, from the centre of mass."},
+    {"/physics/part/hold", "body part x y z tx ty tz",
+     "A spring pulls the point x y z, in the part's frame, to tx ty tz in the world; for half a second without "
+     "another."},
+    {"/physics/part/release", "body part", "Lets go of a part that is held."},
     {"/physics/behavior/parameter", "[body] behavior parameter value",
      "Sets a parameter, or active, of the behaviour of that name, in every body or one."},
     {"/visuals/camera/projection", "fovy aspect near far",
@@ -99,6 +103,8 @@ Dispatch::Dispatch(World& world, Presets* presets, std::span<const Table* const>
   // those that are neither
   by_name_["/list/presets"].irregular = &Dispatch::preset;
   by_name_["/physics/part/force"].irregular = &Dispatch::part_force;
+  by_name_["/physics/part/hold"].irregular = &Dispatch::part_hold;
+  by_name_["/physics/part/release"].irregular = &Dispatch::part_release;
   by_name_["/physics/behavior/parameter"].irregular = &Dispatch::behavior_parameter;
   by_name_["/visuals/camera/projection"].irregular = &Dispatch::projection;
   by_name_["/get"].irregular = &Dispatch::get;
@@ -304,6 +310,40 @@ Outcome Dispatch::part_force(const Message& message) {
     Part& part = *static_cast<Part*>(store_.thing(place.node));
     part.apply_force_at({v[0], v[1], v[2]}, part.center() + Vec3(v[3], v[4], v[5]));
   }
+  return {};
+}
+
+Outcome Dispatch::part_hold(const Message& message) {
+  static const Row& row = Part::table().at("position");
+  constexpr std::size_t kNames = 2;
+  constexpr std::size_t kNumbers = 6;
+  const std::span<const Arg> args = message.args;
+  if (args.size() != kNames + kNumbers || !Selector::single(args.first(kNames), kNames))
+    return Outcome::refused("takes a body, a part, a point x y z of it and where that is pulled to, x y z");
+  double v[kNumbers] = {};
+  for (std::size_t i = 0; i < kNumbers; i++) {
+    const Arg& arg = args[kNames + i];
+    v[i] = arg.number;
+    if (!arg.is_numeric() || !std::isfinite(v[i])) return Outcome::refused("takes six numbers behind the names");
+  }
+  places_.clear();
+  if (const Result<void> selected = selector_.select(Part::table(), row, args.first(kNames), places_); !selected)
+    return Outcome::refused(selected.error());
+  const NodeId id = places_.front().node;
+  if (static_cast<Part*>(store_.thing(id))->is_static())
+    return Outcome::refused(fmt::format("{} is static and never moves", thing_text(store_, id)));
+  if (!grips_.hold(world_, id, {v[0], v[1], v[2]}, {v[3], v[4], v[5]}))
+    return Outcome::refused(fmt::format("{} parts are held already", Grips::kMost));
+  return {};
+}
+
+Outcome Dispatch::part_release(const Message& message) {
+  static const Row& row = Part::table().at("position");
+  if (message.args.size() != 2) return Outcome::refused("takes a body and a part");
+  places_.clear();
+  if (const Result<void> selected = selector_.select(Part::table(), row, message.args, places_); !selected)
+    return Outcome::refused(selected.error());
+  for (const Place& place : places_) grips_.let_go(place.node);
   return {};
 }
 

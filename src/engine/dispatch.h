@@ -11,6 +11,7 @@
 #include "base/message.h"
 #include "engine/answers.h"
 #include "engine/coerce.h"
+#include "engine/grips.h"
 #include "engine/outcome.h"
 #include "engine/presets.h"
 #include "engine/select.h"
@@ -41,6 +42,8 @@ class Dispatch {
     hints_.left = HintBudget::kPerTick;
     work_.left = kTickWork;
   }
+  /// What hands hold in the picture pulls; before each step.
+  void pull_grips() { grips_.pull(world_); }
   /// What the last message set.
   struct Write {
     Place place;
@@ -82,6 +85,8 @@ class Dispatch {
   /// Does the action of each of `places_`.
   Outcome act(std::span<const Arg> value);
   Outcome part_force(const Message& message);
+  Outcome part_hold(const Message& message);
+  Outcome part_release(const Message& message);
   Outcome projection(const Message& message);
   Outcome behavior_parameter(const Message& message);
   Outcome list(const Message& message);
@@ -103,6 +108,7 @@ class Dispatch {
   std::vector<std::string> addresses_;  // all of them, for near ones
   ByText<Place> paths_;                 // exact paths seen since the structure last changed
   std::uint64_t paths_version_ = 0;
+  Grips grips_;
   std::vector<Place> places_;  // scratch: what the message means
   std::vector<Write> writes_;  // what it will write, once all of it is known to be right
 };

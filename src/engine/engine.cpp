@@ -249,6 +249,7 @@ void Engine::pass(bool may_step) {
   times_.scripts = watch.lap();
 
   if (running) {
+    stage.dispatch.pull_grips();
     stage.world.step();
     const TickTimes& physics = stage.world.times();
     times_.behaviors = physics.behaviors;

@@ -124,6 +124,11 @@ double Desk::number(std::string_view path, double otherwise) const {
   return at && this->values(*at, values) ? values[0] : otherwise;
 }
 
+void Desk::choose(std::string path) {
+  selected = std::move(path);
+  reveal = selected;
+}
+
 void Desk::recall(double number) {
   if (number > this->number("/preset/count")) return say(fmt::format("there is no preset {}", number));
   const std::vector<std::string> names = easings();

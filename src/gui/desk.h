@@ -55,7 +55,13 @@ class Desk {
   bool help = false;          ///< F2.
   std::string notice;         ///< A line that is shown for a while, such as what was copied.
   double notice_until = 0;    ///< s
-  std::uint64_t errors = 0;   ///< Faults that stand, for lamps.
+  /// What a hand drags in the picture, and where to, pixels.
+  struct Mark {
+    double x = 0, y = 0, to_x = 0, to_y = 0;
+    std::string name;
+  };
+  std::optional<Mark> mark;
+  std::uint64_t errors = 0;  ///< Faults that stand, for lamps.
 
   /// The clipboard; the window's, in tests one of their own.
   std::function<void(const std::string&)> copy = [](const std::string&) {};
@@ -79,6 +85,8 @@ class Desk {
   /// No hand holds anything: the next value that is set is an edit of its own.
   void let_go() { holding_ = false; }
 
+  /// The thing of that address is chosen, and shown in the tree.
+  void choose(std::string path);
   /// A preset by its number from 1, in the time that is set.
   void recall(double number);
 

@@ -119,6 +119,7 @@ void Gui::frame(const GuiFrame& frame) {
   if (!desk_.settings.hidden && desk_.now != nullptr && desk_.image != nullptr) {
     for (std::size_t i = 0; i < layout_.slots.size(); i++) draw_slot(static_cast<Slot>(i));
   }
+  if (desk_.mark) draw_mark(*desk_.mark);
   if (desk_.help) draw_help();
   if (desk_.clock < desk_.notice_until) draw_notice();
   if (!ImGui::IsAnyItemActive()) desk_.let_go();
@@ -262,10 +263,27 @@ void Gui::draw_help() const {
     for (const Hotkey& hotkey : hotkeys()) line(hotkey.shown, hotkey.does);
     ImGui::Separator();
     line("drag", "turn the view; Shift: shift it; wheel: nearer, further");
+    line("a part", "click: choose; twice: follow; drag: pull; Ctrl: push");
     line("drag a bar", "set a value; Ctrl and click: type it; right click: copy its address");
     line("Tab, arrows, Enter", "go about and set values by keys");
   }
   ImGui::End();
+}
+
+// a ring at what is held, a line to the hand, its name
+void Gui::draw_mark(const Desk::Mark& mark) const {
+  ImDrawList& list = *ImGui::GetBackgroundDrawList();
+  const auto s = static_cast<float>(desk_.scale);
+  const ImVec2 from{static_cast<float>(mark.x), static_cast<float>(mark.y)};
+  const ImVec2 to{static_cast<float>(mark.to_x), static_cast<float>(mark.to_y)};
+  list.AddCircle(from, 13 * s, packed(Tone::accent), 32, 2 * s);
+  list.AddLine(from, to, packed(Tone::text), 1.5F * s);
+  list.AddCircleFilled(to, 4 * s, packed(Tone::text), 16);
+  const ImVec2 size = ImGui::CalcTextSize(mark.name.c_str());
+  const ImVec2 at{to.x + 12 * s, to.y - size.y / 2};
+  list.AddRectFilled({at.x - 5 * s, at.y - 3 * s}, {at.x + size.x + 5 * s, at.y + size.y + 3 * s},
+                     packed(Tone::panel, 0.9), 4 * s);
+  list.AddText(at, packed(Tone::text), mark.name.c_str());
 }
 
 void Gui::draw_notice() const {

@@ -77,6 +77,7 @@ class Gui {
   void act(HotkeyAction action, const KeyPress& press);
   void draw_slot(Slot slot);
   void draw_tabs(std::size_t slot, const std::vector<Seat*>& seats);
+  void draw_mark(const Desk::Mark& mark) const;
   void draw_help() const;
   void draw_notice() const;
 

@@ -38,6 +38,7 @@ std::vector<KeyPress> InputQueue::frame() {
   bool buttons[3] = {};
   bool keys[static_cast<std::size_t>(GuiKey::count)] = {};
   bool any_button = false;
+  bool moved = false;  // with a button held
   bool any_key = false;
   bool any_text = false;
   for (; !events_.empty(); events_.pop_front()) {
@@ -45,6 +46,7 @@ std::vector<KeyPress> InputQueue::frame() {
     switch (event.kind) {
       case InputEvent::Kind::move:
         if (any_button) return pressed;  // a press is where the mouse was then
+        moved = io.MouseDown[0] || io.MouseDown[1] || io.MouseDown[2];
         x_ = event.x;
         y_ = event.y;
         io.MousePos = {static_cast<float>(x_), static_cast<float>(y_)};
@@ -52,6 +54,7 @@ std::vector<KeyPress> InputQueue::frame() {
       case InputEvent::Kind::button:
         if (event.button < 0 || event.button > 2) break;
         if (buttons[event.button] || any_key || any_text) return pressed;
+        if (!event.down && moved) return pressed;  // a drag's end counts before it is let go of
         buttons[event.button] = any_button = true;
         tell_mods(io, event.mods);
         io.MouseDown[event.button] = event.down;
@@ -67,7 +70,10 @@ std::vector<KeyPress> InputQueue::frame() {
           tell_mods(io, event.mods);
           break;
         }
-        if (keys[key] || any_button || (any_text && acts_on_text(event.key))) return pressed;
+        // a letter's key means nothing by itself: many of them fit into a frame, as fast as somebody types
+        const bool letter = event.key >= GuiKey::period && !event.mods.ctrl && !event.mods.alt &&
+                            (event.key < GuiKey::f1 || event.key > GuiKey::f12);
+        if ((keys[key] && !letter) || any_button || (any_text && !letter)) return pressed;
         keys[key] = true;
         any_key |= acts_on_text(event.key);
         tell_mods(io, event.mods);

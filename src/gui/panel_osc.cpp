@@ -16,6 +16,7 @@ namespace limber {
 namespace {
 
 constexpr std::size_t kMonitorLines = 400;
+constexpr int kMonitorUnseen = 30;     // frames until traffic is noted no longer
 constexpr double kMonitorAgain = 0.5;  // s until an address is shown again
 constexpr std::size_t kMonitorAddresses = 4096;
 
@@ -23,11 +24,11 @@ class OscPanel : public Panel {
  public:
   void draw(Desk& desk) override {
     // traffic is noted only while somebody looks
-    if (watch_ == nullptr || desk.clock - looked_ > 1) {
+    unseen_ = 0;
+    if (watch_ == nullptr) {
       seen_ = desk.link.traffic.newest();
       watch_ = std::make_unique<Traffic::Watch>(desk.link.traffic);
     }
-    looked_ = desk.clock;
     counters(desk);
     search_field(desk, "osc.filter", "filter addresses", filter_, -1);
     for (const TrafficLine& line : desk.link.traffic.since(seen_)) take(line);
@@ -45,8 +46,8 @@ class OscPanel : public Panel {
     ImGui::EndChild();
   }
 
-  void hear(Desk& desk) override {
-    if (watch_ != nullptr && desk.clock - looked_ > 1) watch_.reset();
+  void hear(Desk&) override {
+    if (unseen_++ > kMonitorUnseen) watch_.reset();
   }
 
  private:
@@ -114,7 +115,7 @@ class OscPanel : public Panel {
   }
 
   std::unique_ptr<Traffic::Watch> watch_;
-  double looked_ = 0;
+  int unseen_ = 0;  // frames
   std::uint64_t seen_ = 0;
   std::string filter_;
   std::deque<Line> lines_;

@@ -16,7 +16,7 @@ constexpr double kFurthest = 1e5;
 
 }  // namespace
 
-Lens lens_of(const CameraView& camera, int width, int height) {
+Lens lens_of(const CameraView& camera, int width, int height, const FreePart& free) {
   Lens lens;
   const glm::dvec3 r = glm::radians(camera.rotation);
   glm::dmat4 view = glm::translate(glm::dmat4(1), camera.position);
@@ -32,8 +32,11 @@ Lens lens_of(const CameraView& camera, int width, int height) {
   const double aspect = camera.aspect > 0 ? std::max(camera.aspect, 1e-3) : static_cast<double>(width) / height;
   const double fovy = glm::radians(camera.fovy);
   const double far = std::max(camera.far, 1.001 * camera.near);
-  lens.projection = glm::mat4(glm::perspective(fovy, aspect, camera.near, far));
-  lens.pixels = height / (2 * std::tan(fovy / 2));
+  const double part = std::clamp(free.height, 0.05, 1.0);
+  const glm::dvec3 middle(2 * free.x + free.width - 1, 1 - 2 * free.y - free.height, 0);
+  const glm::dmat4 placed = glm::scale(glm::translate(glm::dmat4(1), middle), glm::dvec3(part, part, 1));
+  lens.projection = glm::mat4(placed * glm::perspective(fovy, aspect, camera.near, far));
+  lens.pixels = part * height / (2 * std::tan(fovy / 2));
   return lens;
 }
 

@@ -16,8 +16,13 @@ struct Lens {
   Vec3 target{0};
   double pixels = 0;  ///< What a metre takes at a metre's distance.
 };
-/// For a picture of that size. [any]
-Lens lens_of(const CameraView& camera, int width, int height);
+/// The part of a picture that nothing lies over, from its top left corner, 0 .. 1.
+struct FreePart {
+  double x = 0, y = 0, width = 1, height = 1;
+};
+/// For a picture of that size. What the camera sees from bottom to top fills the free part's height, about its middle;
+/// the picture goes on beyond it. [any]
+Lens lens_of(const CameraView& camera, int width, int height, const FreePart& free = {});
 
 /// Two points that a hand moves: where it looks from, and at. Angles in radians; the eye stays upright.
 struct Orbit {

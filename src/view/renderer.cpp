@@ -250,13 +250,14 @@ void Renderer::draw_floors(const Lighting& lighting, const LookView& look) {
   glEnable(GL_CULL_FACE);
 }
 
-Result<void> Renderer::draw(const Snapshot& before, const Snapshot& now, double mix, int width, int height) {
+Result<void> Renderer::draw(const Snapshot& before, const Snapshot& now, double mix, int width, int height,
+                            const FreePart& free) {
   width = std::max(width, 1);
   height = std::max(height, 1);
   if (Result<void> sized = resize(width, height); !sized) return sized;
   const CameraView camera = camera_of(now);
   const LookView look = look_of(now);
-  const Lens lens = lens_of(camera, width, height);
+  const Lens lens = lens_of(camera, width, height, free);
   list_.gather(before, now, mix, {lens.eye, lens.forward, lens.pixels, grade_.coarser});
   forget_meshes();
   Stand stand{list_.center(), list_.radius(), 0, grade_.lamp_map};

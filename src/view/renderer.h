@@ -9,6 +9,7 @@
 
 #include "view/draw_list.h"
 #include "view/gl.h"
+#include "view/lens.h"
 #include "view/lighting.h"
 #include "view/pixels.h"
 #include "view/shaders.h"
@@ -24,7 +25,9 @@ class Renderer {
   static Result<std::unique_ptr<Renderer>> make(const std::string& shader_folder, Quality quality);
 
   /// Draws between two snapshots (`mix` 0: before, 1: now). A picture is at least 1 × 1; an error: too large. [main]
-  Result<void> draw(const Snapshot& before, const Snapshot& now, double mix, int width, int height);
+  /// `free`: where nothing will lie over it.
+  Result<void> draw(const Snapshot& before, const Snapshot& now, double mix, int width, int height,
+                    const FreePart& free = {});
   Result<void> draw(const Snapshot& now, int width, int height) { return draw(now, now, 1, width, height); }
   /// Calls what draws over the picture drawn last, which is bound, its colours as they are. [main]
   void draw_over(const std::function<void()>& draw) const;

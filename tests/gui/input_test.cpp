@@ -57,11 +57,44 @@ TEST(Input, APressIsWhereTheMouseWasThen) {
   EXPECT_EQ(rig.read("/physics/sim/paused"), 1);
 }
 
+TEST(Input, ADragWithinAFrameGoesToItsEnd) {
+  PanelRig rig;
+  const PanelRect bar = rig.where("/scene/rate");
+  rig.move(bar.x + bar.width / 2, bar.y + 5);
+  rig.button(true);
+  rig.move(bar.x + bar.width + 50, bar.y + 5);
+  rig.button(false);
+  rig.heard();
+  EXPECT_EQ(rig.read("/scene/rate"), 2);
+}
+
+TEST(Input, LettersComeAsFastAsSomebodyTypes) {
+  PanelRig rig;
+  rig.click("parameters.search");
+  for (const char letter : std::string("rate")) {
+    InputEvent event;
+    event.kind = InputEvent::Kind::key;
+    event.key = static_cast<GuiKey>(static_cast<int>(GuiKey::a) + letter - 'a');
+    event.down = true;
+    rig.push(event);
+    InputEvent text;
+    text.kind = InputEvent::Kind::text;
+    text.letter = static_cast<std::uint32_t>(letter);
+    rig.push(text);
+    event.down = false;
+    rig.push(event);
+  }
+  rig.frame();
+  EXPECT_FALSE(rig.gui->has_events()) << "a word is one frame";
+  rig.frames(4);
+  EXPECT_TRUE(rig.sees("/scene/rate"));
+}
+
 TEST(Input, AFloodOfEventsIsBounded) {
   InputQueue queue;
   InputEvent event;
   event.kind = InputEvent::Kind::key;
-  event.key = GuiKey::a;
+  event.key = GuiKey::f1;
   for (int i = 0; i < 100000; i++) queue.push(event);
   PanelRig rig;
   int frames = 0;

@@ -39,6 +39,21 @@ TEST(Lens, AMetreAtAMetreTakesItsPixels) {
   EXPECT_NEAR(square.projection[0][0], square.projection[1][1], 1e-6) << "the row wins over the picture";
 }
 
+TEST(Lens, ThePictureFillsThePartThatIsFree) {
+  CameraView camera;
+  camera.fovy = 90;
+  camera.position = {0, 0, -2};  // looks down from 2 m: the picture is 4 m high there
+  camera.distance = 2;
+  const FreePart free{0.1, 0.2, 0.5, 0.6};
+  const Lens lens = lens_of(camera, 400, 200, free);
+  const Vec3 middle = seen(lens, lens.target);
+  EXPECT_NEAR(middle.x, 2 * 0.35 - 1, 1e-5) << "0.1 and half of 0.5";
+  EXPECT_NEAR(middle.y, 1 - 2 * 0.5, 1e-5) << "0.2 and half of 0.6";
+  EXPECT_NEAR(seen(lens, lens.target + 2.0 * lens.up).y, 1 - 2 * 0.2, 1e-5) << "the upper edge";
+  EXPECT_NEAR(seen(lens, lens.target - 2.0 * lens.up).y, 1 - 2 * 0.8, 1e-5) << "the lower one";
+  EXPECT_NEAR(lens.pixels, 0.6 * 100, 1e-9);
+}
+
 TEST(Orbit, TurnsAboutItsTarget) {
   Orbit orbit{{0, -2, 0}, {0, 0, 0}};
   orbit.turn(kPi / 2, 0);

@@ -1,0 +1,95 @@
+// Hands that hold parts: a spring that pulls, whatever the masses, and lets go by itself.
+#include "engine/grips.h"
+
+#include "engine/show.h"
+
+namespace limber::engine_test {
+namespace {
+
+constexpr const char* kGripBall = R"(
+sim.gravity = vec3(0, 0, 0)
+local body = sim:add_body("body")
+body:add_part("ball", sim:add_sphere_shape("ball", 0.1), { position = vec3(0, 0, 1), mass = 2 })
+body:add_part("base", "ball", { position = vec3(5, 0, 1), mass = 0 })
+)";
+
+TEST(Grips, PullAPointToWhereTheHandIs) {
+  const SceneFile file(kGripBall);
+  Show show(file.path());
+  for (int i = 0; i < 120; i++) {
+    show.send("/physics/part/hold", "body", "ball", 0, 0, 0, 1, 2, 3);
+    show.ticks(1);
+  }
+  EXPECT_NEAR(show.read("/physics/body/body/part/ball/position", 0), 1, 0.01);
+  EXPECT_NEAR(show.read("/physics/body/body/part/ball/position", 1), 2, 0.01);
+  EXPECT_NEAR(show.read("/physics/body/body/part/ball/position", 2), 3, 0.01);
+}
+
+// k = m·ω², c = 2·m·ω: from rest at distance d, after t: d·(1 + ω·t)·e^(−ω·t), a little more as forces come by ticks
+TEST(Grips, AFreeBodyComesWithoutSwingingOver) {
+  const SceneFile file(kGripBall);
+  Show show(file.path());
+  double most = 0;
+  for (int i = 1; i <= 60; i++) {
+    show.send("/physics/part/hold", "body", "ball", 0, 0, 0, 1, 0, 1);
+    show.ticks(1);
+    const double x = show.read("/physics/body/body/part/ball/position", 0);
+    most = std::max(most, x);
+    const double t = Grips::kOmega * i / 60.0;
+    EXPECT_NEAR(1 - x, (1 + t) * std::exp(-t), 0.12) << "tick " << i;
+  }
+  EXPECT_LT(most, 1.02);
+}
+
+TEST(Grips, AHandThatSaysNothingMoreLetsGo) {
+  const SceneFile file(kGripBall);
+  Show show(file.path());
+  show.send("/physics/part/hold", "body", "ball", 0, 0, 0, 100, 0, 1);
+  show.ticks(32);
+  const double speed = show.read("/physics/body/body/part/ball/linear_velocity", 0);
+  EXPECT_GT(speed, 1);
+  show.ticks(10);
+  EXPECT_EQ(show.read("/physics/body/body/part/ball/linear_velocity", 0), speed) << "after half a second it is free";
+  show.send("/physics/part/hold", "body", "ball", 0, 0, 0, 100, 0, 1);
+  show.ticks(1);
+  show.send("/physics/part/release", "body", "ball");
+  const double then = show.read("/physics/body/body/part/ball/linear_velocity", 0);
+  show.ticks(5);
+  EXPECT_EQ(show.read("/physics/body/body/part/ball/linear_velocity", 0), then) << "or at once, when it says so";
+}
+
+TEST(Grips, ALightTipOfAHeavyBodyDoesNotShake) {
+  const SceneFile file(R"(
+sim.gravity = vec3(0, 0, 0)
+local body = sim:add_body("body")
+body:add_part("heavy", sim:add_sphere_shape("ball", 0.2), { position = vec3(0, 0, 1), mass = 50 })
+body:add_part("tip", "ball", { position = vec3(0, 0, 2), mass = 0.01 })
+body:add_joint("j", "heavy", "tip", { axis = vec3(0, 1, 0), position = vec3(0, 0, 1.5) })
+)");
+  Show show(file.path());
+  for (int i = 0; i < 300; i++) {
+    show.send("/physics/part/hold", "body", "tip", 0, 0, 0, 0.5, 0, 2);
+    show.ticks(1);
+    ASSERT_LT(std::abs(show.read("/physics/body/body/part/tip/linear_velocity", 0)), 20) << "tick " << i;
+  }
+}
+
+TEST(Grips, WhatIsWrongIsRefused) {
+  const SceneFile file(kGripBall);
+  Show show(file.path());
+  const auto refused = [&] { return show.link.counters.refused.load(); };
+  show.send("/physics/part/hold", "body", "base", 0, 0, 0, 1, 0, 1);
+  show.send("/physics/part/hold", "body", "nobody", 0, 0, 0, 1, 0, 1);
+  show.send("/physics/part/hold", "body", "ball", 0, 0, 0, 1, 0);
+  show.send("/physics/part/hold", "body", "*", 0, 0, 0, 1, 0, 1);
+  show.send("/physics/part/hold", "body", "ball", 0, 0, 0, 1, 0, std::numeric_limits<double>::quiet_NaN());
+  show.ticks(1);
+  EXPECT_EQ(refused(), 5u);
+  show.send("/physics/part/hold", "body", "ball", 0, 0, 0, 1, 0, 1);
+  show.send("/physics/body/body/remove");
+  show.ticks(3);
+  EXPECT_EQ(refused(), 5u) << "a part that goes is let go of";
+}
+
+}  // namespace
+}  // namespace limber::engine_test

@@ -1,0 +1,59 @@
+// Picking: what a ray through the picture meets first.
+#include "view/pick.h"
+
+#include "view/stage.h"
+
+namespace limber::view_test {
+namespace {
+
+ShapeModel ball_of(double radius) {
+  ShapeModel model;
+  model.kind = ShapeKind::sphere;
+  model.radius = radius;
+  return model;
+}
+
+TEST(Pick, TheNearestUnderThePlace) {
+  Stage stage;
+  Part& near = stage.add("near", ball_of(0.5), {0, 0, 0});
+  stage.add("far", ball_of(0.5), {0, 5, 0});
+  ShapeModel box;
+  box.size = {0.4, 0.4, 2};
+  Part& side = stage.add("side", box, {3, 0, 0});
+  stage.look_from({0, -10, 0}, {0, 0, 0});
+  const auto now = stage.snapshot();
+  const Lens lens = lens_of(camera_of(*now), 200, 100);
+  const auto at = [&](Part& part) { return stage.store.view()->slots[part.id().slot].live; };
+  const auto middle = pick(*now, lens, 0, 0);
+  ASSERT_TRUE(middle.has_value());
+  EXPECT_EQ(middle->part_at, at(near));
+  EXPECT_NEAR(middle->distance, 9.5, 1e-3) << "its surface";
+  EXPECT_LT(glm::length(middle->point - Vec3(0, -0.5, 0)), 1e-3);
+  const glm::vec4 clip = lens.projection * lens.view * glm::vec4(3, 0, 0.8, 1);
+  const auto post = pick(*now, lens, static_cast<double>(clip.x / clip.w), static_cast<double>(clip.y / clip.w));
+  ASSERT_TRUE(post.has_value());
+  EXPECT_EQ(post->part_at, at(side));
+  EXPECT_FALSE(pick(*now, lens, 0.5, 0.9).has_value()) << "the sky is nothing";
+}
+
+TEST(Pick, SeesThroughThePartThatIsFree) {
+  Stage stage;
+  stage.add("ball", ball_of(0.5), {0, 0, 0});
+  stage.look_from({0, -10, 0}, {0, 0, 0});
+  const auto now = stage.snapshot();
+  const Lens lens = lens_of(camera_of(*now), 200, 100, {0, 0, 0.5, 0.5});
+  EXPECT_FALSE(pick(*now, lens, 0, 0).has_value());
+  EXPECT_TRUE(pick(*now, lens, -0.5, 0.5).has_value()) << "the middle of the upper left quarter";
+}
+
+TEST(Pick, APartThatIsOutOfTheWorldIsNoneToPick) {
+  Stage stage;
+  stage.add("ball", ball_of(0.5), {0, 0, 0});
+  stage.look_from({0, -10, 0}, {0, 0, 0});
+  stage.set("/physics/body/ball/enabled", {0});
+  const auto now = stage.snapshot();
+  EXPECT_FALSE(pick(*now, lens_of(camera_of(*now), 200, 100), 0, 0).has_value());
+}
+
+}  // namespace
+}  // namespace limber::view_test
