@@ -35,9 +35,9 @@ enum class Hand : std::uint8_t { osc, query, command_line, console, panel, scrip
 
 struct Origin {
   Hand hand = Hand::osc;
-  std::uint32_t ip = 0;  ///< IPv4 in host order; 0: no address to answer to.
-  std::uint16_t port = 0;
-  bool follows = false;  ///< It is told of changes: what it sets is noted, so that it is not told that.
+  std::uint32_t ip = 0;    ///< IPv4 in host order; 0: no address to answer to.
+  std::uint16_t port = 0;  ///< Without an address: which of the hand's gestures this belongs to, such as a drag.
+  bool follows = false;    ///< It is told of changes: what it sets is noted, so that it is not told that.
 
   /// The same hand, whatever it follows.
   bool operator==(const Origin& other) const { return hand == other.hand && ip == other.ip && port == other.port; }

@@ -126,7 +126,8 @@ void Edits::trim() {
 
 // undoing what is set again at once would be for nothing
 bool Edits::goes_on(const Step& step, const World& world) const {
-  return running_ && !(step.who == who_) && world.time() - step.time <= kGesture;
+  const bool own = step.who.hand == who_.hand && step.who.ip == who_.ip && (who_.ip == 0 || step.who.port == who_.port);
+  return running_ && !own && world.time() - step.time <= kGesture;
 }
 
 // In the order in which they were set: a group's value goes to its members, whose own stand behind it. What is now is

@@ -1,4 +1,4 @@
-// Images in, messages out, and the panel's own undo.
+// Images in, messages out.
 #include "gui/desk.h"
 
 #include <algorithm>
@@ -15,7 +15,6 @@ namespace {
 
 constexpr double kAskEvery = 1.0 / 20;  // s; the simulation gives a hundredth of its time to images at most
 constexpr double kNoticeLasts = 2.5;    // s
-constexpr std::size_t kMostEdits = 1000;
 
 }  // namespace
 
@@ -39,7 +38,7 @@ Message set_message(const std::string& path, const Row& row, const HandValues::V
 std::uint64_t Desk::send(Message message) {
   Command command;
   command.messages.push_back(std::move(message));
-  command.origin = Origin{Hand::panel, 0, 0, false};
+  command.origin = Origin{Hand::panel, 0, gesture_, false};
   link.inbox.push(std::move(command));
   asked_ = link.ask_image();
   asked_at_ = clock;
@@ -51,19 +50,12 @@ std::uint64_t Desk::send(std::string address, std::vector<Arg> args) {
 }
 
 void Desk::set(const PlacedRow& at, const HandValues::Values& values, bool held) {
-  HandValues::Values before{};
-  this->values(at, before);
-  if (std::exchange(holding_, held) && !done_.empty() && done_.back().path == at.path) {
-    done_.back().after = values;
-  } else {
-    if (done_.size() >= kMostEdits) done_.erase(done_.begin());
-    done_.push_back({at.path, before, values});
-  }
-  undone_.clear();
+  if (!std::exchange(holding_, held)) gesture_++;
   hand_.set(at.path, values, send(set_message(at.path, *at.place.row, values)));
 }
 
 void Desk::set_all(const std::string& pattern, double value) {
+  gesture_++;
   hand_.set(pattern, {value}, send(pattern, {Arg::of(value)}));
 }
 
@@ -72,30 +64,16 @@ std::optional<double> Desk::shown(const std::string& pattern) const {
   return values == nullptr ? std::nullopt : std::optional((*values)[0]);
 }
 
-void Desk::set_back(const std::string& path, const HandValues::Values& values) {
-  const std::optional<PlacedRow> at = find(path);
-  if (!at) return say(fmt::format("{} is not there any more", path));
-  hand_.set(path, values, send(set_message(path, *at->place.row, values)));
-  say(path);
+void Desk::step_back(const char* action, const char* what, const char* none) {
+  holding_ = false;
+  const std::optional<PlacedRow> at = find(what);
+  const std::string_view of = at ? text(at->place) : std::string_view();
+  say(of.empty() ? std::string(none) : std::string(of));
+  send(action);  // whatever the image says: it may be older than what a hand has just done
 }
 
-bool Desk::undo() {
-  if (done_.empty()) return false;
-  undone_.push_back(std::move(done_.back()));
-  done_.pop_back();
-  holding_ = false;
-  set_back(undone_.back().path, undone_.back().before);
-  return true;
-}
-
-bool Desk::redo() {
-  if (undone_.empty()) return false;
-  done_.push_back(std::move(undone_.back()));
-  undone_.pop_back();
-  holding_ = false;
-  set_back(done_.back().path, done_.back().after);
-  return true;
-}
+void Desk::undo() { step_back("/edit/undo", "/edit/undo_of", "there is nothing to undo"); }
+void Desk::redo() { step_back("/edit/redo", "/edit/redo_of", "there is nothing to redo"); }
 
 bool Desk::values(const PlacedRow& at, HandValues::Values& values) const {
   if (const HandValues::Values* const hand = hand_.find(at.path)) {

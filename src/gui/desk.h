@@ -25,13 +25,6 @@ struct PlacedRow {
   std::string path;
 };
 
-/// What was set by the panel: for undo.
-struct PanelEdit {
-  std::string path;
-  HandValues::Values before{};
-  HandValues::Values after{};
-};
-
 struct GuiOptions;
 
 class Desk {
@@ -90,8 +83,9 @@ class Desk {
   /// A preset by its number from 1, in the time that is set.
   void recall(double number);
 
-  bool undo();
-  bool redo();
+  /// Takes back what a hand has set last, whichever it was, and does it again.
+  void undo();
+  void redo();
   void say(std::string text);
   void copied(const std::string& text);
 
@@ -99,12 +93,11 @@ class Desk {
   void look(double clock_now);
 
  private:
-  void set_back(const std::string& path, const HandValues::Values& values);
+  void step_back(const char* action, const char* what, const char* none);
 
   HandValues hand_;
-  std::vector<PanelEdit> done_;
-  std::vector<PanelEdit> undone_;
   bool holding_ = false;
+  std::uint16_t gesture_ = 0;
   std::uint64_t asked_ = 0;
   double asked_at_ = 0;
 };

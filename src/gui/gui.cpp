@@ -174,10 +174,10 @@ void Gui::act(HotkeyAction action, const KeyPress& press) {
       desk_.focus_search = true;
       break;
     case HotkeyAction::undo:
-      if (!desk_.undo()) desk_.say("there is nothing to undo");
+      desk_.undo();
       break;
     case HotkeyAction::redo:
-      if (!desk_.redo()) desk_.say("there is nothing to redo");
+      desk_.redo();
       break;
     case HotkeyAction::larger:
       text_size(1);

@@ -31,6 +31,18 @@ TEST(Desk, UndoesOneDragAtATime) {
   EXPECT_EQ(rig.read("/scene/rate"), last) << "after a new edit there is nothing to redo";
 }
 
+TEST(Desk, UndoesWhatAnyHandHasSet) {
+  PanelRig rig;
+  rig.drag("/scene/rate", 0.75);
+  const double dragged = rig.read("/scene/rate");
+  rig.show.send("/scene/rate", 0.25);
+  rig.show.ticks(40);
+  rig.frames(2);
+  ASSERT_EQ(rig.read("/scene/rate"), 0.25);
+  rig.key(GuiKey::z, kCtrl);
+  EXPECT_EQ(rig.read("/scene/rate"), dragged);
+}
+
 TEST(Desk, MessagesAreThePanelsHand) {
   EngineLink link;
   Desk desk(link);
