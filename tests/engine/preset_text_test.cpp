@@ -70,7 +70,7 @@ TEST(PresetText, AValueALine) {
   EXPECT_NE(text.find("\n          \"b\": true,\n          \"c\": \"a \\\"quoted\\\" label\\n\",\n"),
             std::string::npos);
   EXPECT_NE(text.find("\n        \"/physics/body/my%20arm/part/ü\": {\n"), std::string::npos);
-  EXPECT_EQ(text_of({}), "{\n  \"limber presets\": 1,\n  \"presets\": []\n}\n");
+  EXPECT_EQ(text_of(PresetList{}), "{\n  \"limber presets\": 1,\n  \"presets\": []\n}\n");
 }
 
 TEST(PresetText, HalfAFileIsNoFile) {
