@@ -70,14 +70,14 @@ TEST(Take, CurrentScriptsPartWhereTheyDiffer) {
   // the same until half a second has gone, then one body is pushed
   small.folder.write("scripts/small.lua",
                      std::string(kSmallScene) +
-                         "sim:at(0.25, function() sim:body('left').parts[1]:apply_impulse(vec3(0, 0, 1)) end)\n");
+                         "sim:at(0.25, function() sim:body('right').parts[1]:apply_impulse(vec3(0, 0, 1)) end)\n");
   const Replayed exact = replay_take(small.take);
   EXPECT_FALSE(exact.verdict.parted.has_value()) << text_of(exact.verdict);
   const Replayed parted = replay_take(small.take, true);
   ASSERT_TRUE(parted.verdict.parted.has_value());
   // 15 ticks of 1/60 s are 0.25 s: the next one makes the call
   EXPECT_EQ(*parted.verdict.parted, 16u);
-  EXPECT_EQ(parted.verdict.body, "left");
+  EXPECT_EQ(parted.verdict.body, "right");
   EXPECT_EQ(parted.verdict.ticks, 30u) << "it plays on to the end";
 }
 

@@ -125,6 +125,12 @@ inline void play_wildly(Show& show, const ShowFolder& folder, int ticks, std::ui
     }
     if (some(25) == 0) show.send("/edit/undo");
     if (some(30) == 0) show.send("/edit/redo");
+    // one that others step before
+    if (i % 70 == 41) show.send("/physics/behavior/parameter", "arm2", "sway", "hang", 1);
+    if (i % 70 == 55) {
+      show.send("/physics/behavior/parameter", "arm2", "sway", "hang", 0);
+      show.send("/physics/behavior/parameter", "arm2", "sway", "active", 1);
+    }
     if (some(60) == 0) show.send("/scene/count", 1 + some(3));
     if (some(90) == 0) show.send("/transport/reset");
     if (some(60) == 0) show.send("/transport/step", 3);
