@@ -17,6 +17,7 @@
 #include "base/build_info.h"
 #include "base/text.h"
 #include "engine/link.h"
+#include "gui/fonts.h"
 #include "osc/network.h"
 #include "query/server.h"
 #include "view/gl.h"
@@ -83,6 +84,9 @@ void check_drawing() {
   } else {
     finding("mind", "OpenGL", context.error());
   }
+  const FontFiles fonts = find_fonts();
+  for (const std::string& line : fonts.said) finding("mind", "fonts", line);
+  if (fonts.said.empty()) finding("ok", "fonts", "Inter and JetBrains Mono, for the panel");
   const bool video = program_in_path("ffmpeg");
   finding(video ? "ok" : "mind", "ffmpeg",
           video ? "there, for --render film.mp4" : "not there: --render makes stills only; apt-get install ffmpeg");

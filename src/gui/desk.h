@@ -42,12 +42,13 @@ class Desk {
   const GuiOptions* options = nullptr;  ///< What the app has handed over.
 
   // what panels tell each other
-  std::string selected;       ///< Address of the chosen thing; empty: none.
-  std::string reveal;         ///< The tree shows this thing once.
-  bool focus_search = false;  ///< The next frame's search field takes the keyboard.
-  bool help = false;          ///< F2.
-  std::string notice;         ///< A line that is shown for a while, such as what was copied.
-  double notice_until = 0;    ///< s
+  std::string selected;            ///< Address of the chosen thing; empty: none.
+  std::string reveal;              ///< The tree shows this thing once.
+  std::vector<std::string> plots;  ///< Addresses of rows that are plotted.
+  bool focus_search = false;       ///< The next frame's search field takes the keyboard.
+  bool help = false;               ///< F2.
+  std::string notice;              ///< A line that is shown for a while, such as what was copied.
+  double notice_until = 0;         ///< s
   /// What a hand drags in the picture, and where to, pixels.
   struct Mark {
     double x = 0, y = 0, to_x = 0, to_y = 0;

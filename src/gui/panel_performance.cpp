@@ -52,20 +52,26 @@ class PerformancePanel : public Panel {
                 fmt::format("{:.2f} \u00d7", desk.now->speed)};
       for (std::size_t i = 0; i < kPhases.size(); i++) shown_phases_[i] = fmt::format("{:.2f} ms", means_[i]);
     }
-    const float lines = ImGui::GetTextLineHeightWithSpacing() * 6;
+    ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, {ImGui::GetStyle().ItemSpacing.x, ImGui::GetFontSize() * 0.12F});
+    const float lines = ImGui::GetTextLineHeightWithSpacing() * 7.2F;
     const float height = std::max(ImGui::GetContentRegionAvail().y - lines, ImGui::GetFontSize() * 1.6F);
     graph(desk, height, budget);
-    if (!ImGui::BeginChild("##numbers", {}, false, ImGuiWindowFlags_NavFlattened)) return ImGui::EndChild();
+    const bool seen = ImGui::BeginChild("##numbers", {}, false, ImGuiWindowFlags_NavFlattened);
+    if (seen) numbers(desk);
+    ImGui::EndChild();
+    ImGui::PopStyleVar();
+  }
+
+ private:
+  void numbers(Desk& desk) const {
     const std::uint64_t lost = desk.link.counters.dropped.load() + desk.link.counters.dropped_kernel.load();
     pair(desk, "tick", shown_[0], "most", shown_[1]);
     pair(desk, "may take", shown_[2], "reached", shown_[3]);
     for (std::size_t i = 0; i + 1 < kPhases.size(); i += 2)
       pair(desk, kPhases[i].name, shown_phases_[i], kPhases[i + 1].name, shown_phases_[i + 1]);
     pair(desk, "lost in", fmt::format("{}", lost), "inbox", fmt::format("{}", desk.link.inbox.dropped()));
-    ImGui::EndChild();
   }
 
- private:
   void graph(Desk& desk, float height, double budget) {
     const ImVec2 from = ImGui::GetCursorScreenPos();
     const float width = ImGui::GetContentRegionAvail().x;

@@ -255,6 +255,10 @@ void property_hint(Desk& desk, const PlacedRow& at) {
   const std::string lua = lua_path(*desk.image->tree, at.place);
   if (!lua.empty() && ImGui::Selectable("copy the Lua path")) desk.copied(lua);
   if (!lua.empty()) desk.names.note("copy_lua");
+  const bool plotted = std::find(desk.plots.begin(), desk.plots.end(), at.path) != desk.plots.end();
+  if (!plotted && row.width > 0 && row.type != RowType::text && ImGui::Selectable("plot it"))
+    desk.plots.push_back(at.path);
+  desk.names.note("plot_it");
   ImGui::EndPopup();
 }
 
@@ -284,9 +288,9 @@ void property_row(Desk& desk, const PlacedRow& at, const RowFrame& frame) {
   const bool set = desk.values(at, values) && row.kind == RowKind::property && differs_from_default(row, values);
   if (frame.star) {
     star_button(desk, at.path, side);
-    ImGui::SameLine(0, 0);
+    ImGui::SameLine(0, gap * 0.5F);
   }
-  const float left = frame.star ? side : 0;
+  const float left = frame.star ? side + gap * 0.5F : 0;
   const float name = below ? whole - left : static_cast<float>(frame.name_part) * whole - left;
   name_text(desk, at, frame, set || !row.writable(), name - gap);
   if (!below) ImGui::SameLine(left + name + ImGui::GetCursorStartPos().x);

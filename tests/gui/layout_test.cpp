@@ -85,7 +85,8 @@ TEST_P(LayoutOfWidgets, NothingOverlapsOrIsCut) {
   rig.gui->desk().selected = "/physics/body/arm/motor/hinge";
   rig.frames(3);
   expect_orderly(rig, size);
-  for (const char* const tab : {"tab:scene", "tab:behaviors", "tab:errors", "tab:osc", "tab:performance"}) {
+  for (const char* const tab :
+       {"tab:scene", "tab:behaviors", "tab:errors", "tab:osc", "tab:performance", "tab:plots"}) {
     if (!rig.sees(tab)) continue;
     rig.click(tab);
     rig.move(0, 0);
