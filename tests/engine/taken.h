@@ -16,6 +16,7 @@ sim:add_body("floor"):add_part("floor", sim:add_plane_shape("ground"))
 for i = 1, params.count do
   local arm = sim:load_urdf("urdf/arm6.urdf", { name = "arm" .. i, position = vec3(i, 0, 0) })
   arm:add_behavior("sway", "sway", { depth = tool.depth })
+  arm:add_behavior("sway", "again", { depth = tool.depth })
   arm:add_behavior("random_force", "gust", { parts = "*" })
 end
 if tool.more then sim:load_urdf("urdf/bead.urdf", { name = "bead", position = vec3(0, 3, 1) }) end
@@ -125,11 +126,11 @@ inline void play_wildly(Show& show, const ShowFolder& folder, int ticks, std::ui
     }
     if (some(25) == 0) show.send("/edit/undo");
     if (some(30) == 0) show.send("/edit/redo");
-    // one that others step before
-    if (i % 70 == 41) show.send("/physics/behavior/parameter", "arm2", "sway", "hang", 1);
+    // one that another steps before in the same call
+    if (i % 70 == 41) show.send("/physics/behavior/parameter", "arm1", "again", "hang", 1);
     if (i % 70 == 55) {
-      show.send("/physics/behavior/parameter", "arm2", "sway", "hang", 0);
-      show.send("/physics/behavior/parameter", "arm2", "sway", "active", 1);
+      show.send("/physics/behavior/parameter", "arm1", "again", "hang", 0);
+      show.send("/physics/behavior/parameter", "arm1", "again", "active", 1);
     }
     if (some(60) == 0) show.send("/scene/count", 1 + some(3));
     if (some(90) == 0) show.send("/transport/reset");
