@@ -88,10 +88,11 @@ end)
   ASSERT_TRUE(running.wait_for("limber: window 1280 × 720")) << running.err();
   ASSERT_TRUE(running.wait_for("begun", true));
   // the first bar of the parameters, from its middle to its end
-  // (again, until the panel is there to be played)
+  // again, until the panel is there to be played; slowly, as each takes pictures of its own and none is left out
   const auto dragged = [&] { return running.out().find("rate 1.0") != std::string::npos; };
-  for (int i = 0; i < 1000 && !dragged(); i++) {
-    display.xdotool({"mousemove", "1100", "159", "mousedown", "1", "mousemove", "1260", "159", "mouseup", "1"});
+  for (int i = 0; i < 200 && !dragged(); i++) {
+    display.xdotool(
+        {"mousemove", "1100", "159", "mousedown", "1", "mousemove", "1260", "159", "mouseup", "1", "sleep", "0.5"});
     running.look();
   }
   ASSERT_TRUE(dragged()) << running.out();
