@@ -212,11 +212,11 @@ void add_monitor(CLI::App& app, MonitorCommand& command) {
   monitor->footer(
       "  limber monitor --in                          what comes in, with senders and times\n"
       "  limber monitor '/physics/part/*'             of these addresses\n"
-      "  limber monitor --changes                     what becomes another, whoever sets it\n"
+      "  limber monitor --changes                     who sets what, from what to what\n"
       "  limber monitor --changes '/physics/body/arm1/motor/*/target'");
   monitor->add_option("pattern", command.pattern, "of addresses, or with --changes of paths; left out: all")
       ->type_name("PATTERN");
-  monitor->add_flag("--changes", command.changes, "values that change: every property, or what the pattern reaches");
+  monitor->add_flag("--changes", command.changes, "values that change: what hands set, or whatever the pattern reaches");
   CLI::Option* in = monitor->add_flag("--in", command.only_in, "only what comes in");
   monitor->add_flag("--out", command.only_out, "only what goes out")->excludes(in);
   monitor->add_option("--pid", command.pid, "which program, when several play")->type_name("PID");

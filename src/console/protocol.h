@@ -22,7 +22,7 @@ struct ConsoleRequest {
     evaluate,
     complete,
     traffic,  ///< To be told of messages that come in and go out; `text`: of addresses that this pattern matches.
-    changes,  ///< To be told of changed values; `text`: of what this pattern reaches, empty: of every property.
+    changes,  ///< To be told of changed values; `text`: of what this pattern reaches, empty: of what hands set.
   };
   std::uint64_t id = 0;  ///< The console's own number, which the answer repeats.
   Wish wish = Wish::evaluate;

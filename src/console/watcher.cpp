@@ -1,4 +1,4 @@
-// Traffic is read from the link's ring; changes are what two images differ in.
+// Traffic and what hands set are read from the link's rings; changes of a pattern are what two images differ in.
 #include "console/watcher.h"
 
 #include <algorithm>
@@ -45,12 +45,29 @@ class TrafficWatcher : public Watcher {
   std::uint64_t seen_;
 };
 
+// what hands set, beginning with what they have set lately
+class HandWatcher : public Watcher {
+ public:
+  explicit HandWatcher(ChangeLog& changes) : changes_(changes) {}
+
+  void tell(const std::function<void(std::string)>& say, const std::function<void(std::uint64_t)>&) override {
+    for (const ChangeLine& line : changes_.after(seen_)) {
+      seen_ = line.version;
+      say(change_line(line.time, line.who, change_text(line.path, line.from, line.to)));
+    }
+  }
+
+ private:
+  ChangeLog& changes_;
+  std::uint64_t seen_ = 0;
+};
+
+// whatever becomes another value of what a pattern reaches, whoever sets it
 class ChangeWatcher : public Watcher {
  public:
   ChangeWatcher(EngineLink& link, std::string pattern) : link_(link), pattern_(std::move(pattern)) {}
 
   void tell(const std::function<void(std::string)>& say, const std::function<void(std::uint64_t)>&) override {
-    if (asked_ == 0) tell_kept(say);
     const std::shared_ptr<const Image> image = link_.images.read();
     const bool fresh = asked_ != 0 && image != nullptr && image->asks >= asked_;
     if (fresh) hear(image, say);
@@ -64,16 +81,6 @@ class ChangeWatcher : public Watcher {
     std::size_t before = 0;  // in the values of the tree before; kNew: it was not there
   };
   static constexpr std::size_t kNew = ~std::size_t{0};
-
-  // what hands have set before anybody watched
-  void tell_kept(const std::function<void(std::string)>& say) const {
-    std::vector<ChangeLine> lines = link_.changes.since(0);
-    std::ranges::stable_sort(lines, {}, &ChangeLine::time);
-    for (const ChangeLine& line : lines) {
-      if (!pattern_.empty() && !address_matches(pattern_, line.path)) continue;
-      say(change_line(line.time, line.who, change_text(line.path, line.from, line.to)));
-    }
-  }
 
   void hear(const std::shared_ptr<const Image>& image, const std::function<void(std::string)>& say) {
     const bool other = image_ == nullptr || image_->tree != image->tree;
@@ -102,7 +109,7 @@ class ChangeWatcher : public Watcher {
   void bind(const Tree& tree) {
     old_ = std::exchange(values_, {});
     PatternBudget work{kWork};
-    Result<std::vector<TreePlace>> places = tree.match(pattern_.empty() ? "//*" : pattern_, work, kMostPlaces);
+    Result<std::vector<TreePlace>> places = tree.match(pattern_, work, kMostPlaces);
     if (!places) return;
     std::unordered_map<std::uint64_t, std::size_t> known;
     const auto key = [](const Tree& of, const TreePlace& place) {
@@ -110,9 +117,7 @@ class ChangeWatcher : public Watcher {
     };
     for (std::size_t i = 0; i < old_.size(); i++) known.emplace(key(*image_->tree, old_[i].place), i);
     for (const TreePlace& place : *places) {
-      const bool told = place.row != nullptr && place.row->kind != RowKind::action &&
-                        (!pattern_.empty() || place.row->kind == RowKind::property);
-      if (!told) continue;
+      if (place.row == nullptr || place.row->kind == RowKind::action) continue;
       const auto at = known.find(key(tree, place));
       const bool same_thing = at != known.end() && old_[at->second].place.row == place.row &&
                               image_->tree->nodes()[old_[at->second].place.node].id == tree.nodes()[place.node].id;
@@ -148,6 +153,8 @@ Result<std::unique_ptr<Watcher>> make_watcher(EngineLink& link, const ConsoleReq
   std::unique_ptr<Watcher> watcher;
   if (request.wish == ConsoleRequest::Wish::traffic) {
     watcher = std::make_unique<TrafficWatcher>(link, request.text);
+  } else if (request.text.empty()) {
+    watcher = std::make_unique<HandWatcher>(link.changes);
   } else {
     watcher = std::make_unique<ChangeWatcher>(link, request.text);
   }

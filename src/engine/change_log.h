@@ -14,7 +14,8 @@ struct ChangeLine {
   double time = 0;           ///< clock_seconds(), when it was set last.
   std::string who;           ///< As sender_text() names a hand.
   std::string path;
-  std::string from, to;  ///< As value_text() has them; of a hand that goes on, the first and the last.
+  std::string from, to;       ///< As value_text() has them; of a hand that goes on, the first and the last.
+  std::uint64_t version = 0;  ///< Counts what was added or renewed.
 };
 
 class ChangeLog {
@@ -25,6 +26,8 @@ class ChangeLog {
   std::uint64_t add(ChangeLine line);
   /// The hand went on: it is another value now. False: the line has gone.
   bool renew(std::uint64_t number, double time, std::string to);
+  /// Those that were added or renewed after that version, in that order.
+  std::vector<ChangeLine> after(std::uint64_t version) const;
   /// Those that were set at that time or later, the oldest first.
   std::vector<ChangeLine> since(double time) const;
 
@@ -32,6 +35,7 @@ class ChangeLog {
   mutable std::mutex mutex_;
   std::deque<ChangeLine> lines_;
   std::uint64_t newest_ = 0;
+  std::uint64_t versions_ = 0;
 };
 
 }  // namespace limber

@@ -46,7 +46,7 @@ void ChangeNotes::tell(const Store& store, Note& note) {
   std::string to = value_text(*note.row, now.data());
   if (note.line != 0 && log_.renew(note.line, note.time, to)) return;
   note.line = log_.add({0, note.time, sender_text(note.who), fmt::format("{}/{}", store.path(note.id), note.row->name),
-                        value_text(*note.row, note.from.data()), std::move(to)});
+                        value_text(*note.row, note.from.data()), std::move(to), 0});
 }
 
 void ChangeNotes::tell(const Store& store) {
@@ -56,7 +56,7 @@ void ChangeNotes::tell(const Store& store) {
     if (store.alive(note.id)) tell(store, note);
   }
   touched_.clear();
-  if (more_ > 0) log_.add({0, time_, sender_text(who_), fmt::format("({} more values)", more_), "", ""});
+  if (more_ > 0) log_.add({0, time_, sender_text(who_), fmt::format("({} more values)", more_), "", "", 0});
   more_ = 0;
 }
 

@@ -78,10 +78,10 @@ TEST(Watcher, TellsTrafficOfItsPattern) {
   EXPECT_FALSE(link.traffic.watched()) << "who has gone costs nothing";
 }
 
-TEST(Watcher, TellsChangesOfEveryProperty) {
+TEST(Watcher, TellsChangesOfAPattern) {
   const engine_test::SceneFile file(kWatchedScene);
   Show show(file.path());
-  Watching changes(show.link, Wish::changes);
+  Watching changes(show.link, Wish::changes, "//{wind,gravity,mass}");
   const auto after = [&] {
     changes.told();  // asks
     make_image(show);
@@ -103,7 +103,7 @@ TEST(Watcher, TellsChangesOfEveryProperty) {
   EXPECT_EQ(after(), Texts{});
 }
 
-TEST(Watcher, TellsWhichHandItWas) {
+TEST(Watcher, TellsWhatHandsSet) {
   const engine_test::SceneFile file(kWatchedScene);
   Show show(file.path());
   show.send("/scene/wind", 3);
@@ -112,32 +112,43 @@ TEST(Watcher, TellsWhichHandItWas) {
   show.ticks(1);
   show.send("/physics/sim/gravity", 0, 0, -9.81);  // as it is
   show.ticks(1);
-  Watching changes(show.link, Wish::changes);
-  const std::vector<ConsoleLine> before = changes.told();
-  ASSERT_EQ(before.size(), 1u) << "what hands have set before, a gesture as one";
-  EXPECT_EQ(before[0].text, "/scene/wind 2 → 4");
-  EXPECT_EQ(before[0].end, "127.0.0.1:4000");
-  make_image(show);
-  EXPECT_EQ(changes.texts(), Texts{});
+  Watching hands(show.link, Wish::changes);
+  std::vector<ConsoleLine> told = hands.told();
+  ASSERT_EQ(told.size(), 1u) << "what hands have set before, a gesture as one";
+  EXPECT_EQ(told[0].text, "/scene/wind 2 → 4");
+  EXPECT_EQ(told[0].end, "127.0.0.1:4000");
+  EXPECT_EQ(hands.texts(), Texts{});
   show.send("/scene/wind", 5);
   show.link.inbox.push(
-      {{},
-       {Hand::console},
-       std::make_shared<const Evaluate>(Evaluate{Evaluate::Wish::run, "sim.gravity = vec3(0, 0, -1)"})});
-  make_image(show);
-  std::vector<ConsoleLine> now = changes.told();
-  ASSERT_EQ(now.size(), 2u);
-  EXPECT_EQ(now[0].text, "/physics/sim/gravity 0 0 -9.81 → 0 0 -1");
-  EXPECT_EQ(now[0].end, "console");
-  EXPECT_EQ(now[1].text, "/scene/wind 4 → 5");
-  EXPECT_EQ(now[1].end, "127.0.0.1:4000");
+      {{}, {Hand::console}, std::make_shared<const Evaluate>(Evaluate{Evaluate::Wish::run, "sim.gravity = vec3()"})});
   show.send("/later");
-  show.ticks(5);  // a timer sets it: no hand
-  make_image(show);
-  now = changes.told();
-  ASSERT_EQ(now.size(), 1u);
-  EXPECT_EQ(now[0].text, "/scene/sun 0 → 1");
-  EXPECT_EQ(now[0].end, "");
+  show.ticks(5);  // a timer sets the sun: no hand
+  told = hands.told();
+  ASSERT_EQ(told.size(), 2u);
+  EXPECT_EQ(told[0].text, "/scene/wind 2 → 5") << "the gesture goes on";
+  EXPECT_EQ(told[1].text, "/physics/sim/gravity 0 0 -9.81 → 0 0 0");
+  EXPECT_EQ(told[1].end, "console");
+}
+
+TEST(Watcher, TellsOfAPatternWhoseHandItWas) {
+  const engine_test::SceneFile file(kWatchedScene);
+  Show show(file.path());
+  Watching scene(show.link, Wish::changes, "/scene/*");
+  const auto after = [&] {
+    scene.told();  // asks
+    make_image(show);
+    return scene.told();
+  };
+  after();
+  show.send("/scene/wind", 5);
+  show.send("/later");
+  show.ticks(5);
+  const std::vector<ConsoleLine> told = after();
+  ASSERT_EQ(told.size(), 2u);
+  EXPECT_EQ(told[0].text, "/scene/wind 2 → 5");
+  EXPECT_EQ(told[0].end, "127.0.0.1:4000");
+  EXPECT_EQ(told[1].text, "/scene/sun 0 → 1");
+  EXPECT_EQ(told[1].end, "") << "a timer is no hand";
 }
 
 TEST(Watcher, TellsAnyKindWhereAPatternSaysSo) {

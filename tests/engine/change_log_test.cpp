@@ -65,11 +65,13 @@ TEST_F(Noted, AFloodIsCountedAndThingsThatHaveGoneAreNot) {
 
 TEST(ChangeLog, TheOldestLinesGo) {
   ChangeLog log;
-  const std::uint64_t first = log.add({0, 1, "console", "/a", "1", "2"});
-  for (std::size_t i = 1; i < ChangeLog::kMostLines; i++) log.add({0, 2, "console", "/b", "1", "2"});
+  const std::uint64_t first = log.add({0, 1, "console", "/a", "1", "2", 0});
+  for (std::size_t i = 1; i < ChangeLog::kMostLines; i++) log.add({0, 2, "console", "/b", "1", "2", 0});
   EXPECT_TRUE(log.renew(first, 3, "4"));
   EXPECT_EQ(log.since(3).size(), 1u);
-  log.add({0, 2, "console", "/b", "1", "2"});
+  EXPECT_EQ(log.after(ChangeLog::kMostLines).size(), 1u) << "what was renewed is news";
+  EXPECT_EQ(log.after(ChangeLog::kMostLines - 1).back().to, "4");
+  log.add({0, 2, "console", "/b", "1", "2", 0});
   EXPECT_FALSE(log.renew(first, 4, "5"));
   EXPECT_EQ(log.since(0).size(), ChangeLog::kMostLines);
   EXPECT_TRUE(log.since(3).empty());
