@@ -20,6 +20,9 @@ constexpr ImGuiWindowFlags kFixed = ImGuiWindowFlags_NoTitleBar | ImGuiWindowFla
                                     ImGuiWindowFlags_NoBringToFrontOnFocus | ImGuiWindowFlags_NoScrollbar |
                                     ImGuiWindowFlags_NoScrollWithMouse;  // what scrolls lies in a window within
 
+// over the others
+constexpr ImGuiWindowFlags kAbove = kFixed & ~ImGuiWindowFlags_NoBringToFrontOnFocus;
+
 void map_keys(ImGuiIO& io) {
   const auto map = [&](ImGuiKey to, GuiKey from) { io.KeyMap[to] = static_cast<int>(from); };
   map(ImGuiKey_Tab, GuiKey::tab);
@@ -248,7 +251,7 @@ void Gui::draw_help() const {
   ImGui::SetNextWindowSizeConstraints({0, 0}, {size.x - 16, size.y - 16});
   ImGui::SetNextWindowFocus();
   ImGui::SetNextWindowBgAlpha(1);
-  if (ImGui::Begin("##help", nullptr, kFixed | ImGuiWindowFlags_AlwaysAutoResize)) {
+  if (ImGui::Begin("##help", nullptr, kAbove | ImGuiWindowFlags_AlwaysAutoResize)) {
     ImGui::TextUnformatted("Keys and hands");
     ImGui::Separator();
     const auto line = [&](const char* keys, const char* does) {
@@ -293,7 +296,7 @@ void Gui::draw_notice() const {
   ImGui::SetNextWindowPos({std::min(x, size.x), std::min(y, size.y)}, 0, {0.5F, 1});
   if (ImGui::Begin(
           "##notice", nullptr,
-          kFixed | ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoInputs | ImGuiWindowFlags_NoFocusOnAppearing))
+          kAbove | ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoInputs | ImGuiWindowFlags_NoFocusOnAppearing))
     ImGui::TextUnformatted(desk_.notice.c_str());
   ImGui::End();
 }

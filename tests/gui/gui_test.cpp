@@ -4,6 +4,8 @@
 #include <filesystem>
 #include <set>
 
+#include <imgui.h>
+
 #include "gui/rig.h"
 
 namespace limber::gui_test {
@@ -32,6 +34,23 @@ TEST(Gui, F1HidesAndF2Helps) {
   EXPECT_TRUE(rig.sees("transport.play"));
   rig.key(GuiKey::f2);
   EXPECT_TRUE(rig.gui->desk().help);
+}
+
+// what is drawn last lies above
+std::string drawn_last() {
+  const ImDrawData* const drawn = ImGui::GetDrawData();
+  return drawn->CmdLists[drawn->CmdListsCount - 1]->_OwnerName;
+}
+
+TEST(Gui, HelpAndNoticesLieOverThePanels) {
+  PanelRig rig(kScene, 900, 600);
+  rig.key(GuiKey::f2);
+  rig.frames(2);
+  EXPECT_EQ(drawn_last(), "##help");
+  rig.key(GuiKey::f2);
+  rig.key(GuiKey::z, {true, false, false});
+  rig.frames(2);
+  EXPECT_EQ(drawn_last(), "##notice");
 }
 
 TEST(Gui, TextGrowsFrom12To28) {
