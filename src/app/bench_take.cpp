@@ -12,6 +12,7 @@
 #include "base/check.h"
 #include "base/log.h"
 #include "base/random.h"
+#include "engine/engine.h"
 
 namespace limber {
 

@@ -53,7 +53,7 @@ Result<void> Engine::start() {
     if (Result<void> recorded = start_record(); !recorded) return recorded;
   }
   presets_.open(read_presets(options_.scene));
-  const Result<void> started = start_show();
+  Result<void> started = start_show();
   if (started) take_tick(false, true);
   if (!started) drop_take();
   return started;

@@ -27,8 +27,9 @@ void ask_for_large_pages(const std::vector<double>& room) {
   constexpr std::size_t kLarge = std::size_t{4} << 20u;
   const std::size_t bytes = room.capacity() * sizeof(double);
   if (bytes < kLarge) return;
-  const auto begin = (reinterpret_cast<std::uintptr_t>(room.data()) + kPage - 1) / kPage * kPage;
-  (void)madvise(reinterpret_cast<void*>(begin), bytes - kPage, MADV_HUGEPAGE);
+  auto* const first = const_cast<char*>(reinterpret_cast<const char*>(room.data()));
+  const std::size_t skipped = (kPage - reinterpret_cast<std::uintptr_t>(first) % kPage) % kPage;
+  (void)madvise(first + skipped, bytes - kPage, MADV_HUGEPAGE);
 }
 
 PresetRow preset_row(const Row& row) {
@@ -44,7 +45,7 @@ class PresetTaker::Planning {
 
   /// What the patterns reach. First, and once.
   Result<void> begin() {
-    const Result<void> chosen = choose();
+    Result<void> chosen = choose();
     things_.assign(store_.view()->slot_count, 0);
     way_.push_back(store_.root());
     return chosen;

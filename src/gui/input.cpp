@@ -1,6 +1,8 @@
 // Events into Dear ImGui's fields, some a frame.
 #include "gui/input.h"
 
+#include <utility>
+
 #include <imgui.h>
 
 namespace limber {
@@ -32,67 +34,73 @@ void InputQueue::push(const InputEvent& event) {
   events_.push_back(event);
 }
 
-std::vector<KeyPress> InputQueue::frame() {
+bool InputQueue::take_button(const InputEvent& event, Taken& taken) {
+  if (event.button < 0 || event.button > 2) return true;
+  if (taken.buttons[static_cast<std::size_t>(event.button)] || taken.any_key || taken.any_text) return false;
+  if (!event.down && taken.moved) return false;  // a drag's end counts before it is let go of
+  taken.buttons[static_cast<std::size_t>(event.button)] = taken.any_button = true;
   ImGuiIO& io = ImGui::GetIO();
-  std::vector<KeyPress> pressed;
-  bool buttons[3] = {};
-  bool keys[static_cast<std::size_t>(GuiKey::count)] = {};
-  bool any_button = false;
-  bool moved = false;  // with a button held
-  bool any_key = false;
-  bool any_text = false;
-  for (; !events_.empty(); events_.pop_front()) {
-    const InputEvent& event = events_.front();
-    switch (event.kind) {
-      case InputEvent::Kind::move:
-        if (any_button) return pressed;  // a press is where the mouse was then
-        moved = io.MouseDown[0] || io.MouseDown[1] || io.MouseDown[2];
-        x_ = event.x;
-        y_ = event.y;
-        io.MousePos = {static_cast<float>(x_), static_cast<float>(y_)};
-        break;
-      case InputEvent::Kind::button:
-        if (event.button < 0 || event.button > 2) break;
-        if (buttons[event.button] || any_key || any_text) return pressed;
-        if (!event.down && moved) return pressed;  // a drag's end counts before it is let go of
-        buttons[event.button] = any_button = true;
-        tell_mods(io, event.mods);
-        io.MouseDown[event.button] = event.down;
-        break;
-      case InputEvent::Kind::wheel:
-        io.MouseWheelH += static_cast<float>(event.x);
-        io.MouseWheel += static_cast<float>(event.y);
-        break;
-      case InputEvent::Kind::key: {
-        const auto key = static_cast<std::size_t>(event.key);
-        if (event.key == GuiKey::none) {  // a modifier alone
-          if (any_button || any_text) return pressed;
-          tell_mods(io, event.mods);
-          break;
-        }
-        // a letter's key means nothing by itself: many of them fit into a frame, as fast as somebody types
-        const bool letter = event.key >= GuiKey::period && !event.mods.ctrl && !event.mods.alt &&
-                            (event.key < GuiKey::f1 || event.key > GuiKey::f12);
-        if ((keys[key] && !letter) || any_button || (any_text && !letter)) return pressed;
-        keys[key] = true;
-        any_key |= acts_on_text(event.key);
-        tell_mods(io, event.mods);
-        io.KeysDown[key] = event.down;
-        if (event.down) pressed.push_back({event.key, event.mods});
-        break;
-      }
-      case InputEvent::Kind::text:
-        if (any_button || any_key) return pressed;
-        any_text = true;
-        io.AddInputCharacter(event.letter);
-        break;
-      case InputEvent::Kind::focus:
-        if (!event.down) let_go(io);
-        if (event.down) io.AddFocusEvent(true);
-        break;
-    }
+  tell_mods(io, event.mods);
+  io.MouseDown[event.button] = event.down;
+  return true;
+}
+
+bool InputQueue::take_key(const InputEvent& event, Taken& taken) {
+  ImGuiIO& io = ImGui::GetIO();
+  if (event.key == GuiKey::none) {  // a modifier alone
+    if (taken.any_button || taken.any_text) return false;
+    tell_mods(io, event.mods);
+    return true;
   }
-  return pressed;
+  const auto key = static_cast<std::size_t>(event.key);
+  // a letter's key means nothing by itself: many of them fit into a frame, as fast as somebody types
+  const bool letter = event.key >= GuiKey::period && !event.mods.ctrl && !event.mods.alt &&
+                      (event.key < GuiKey::f1 || event.key > GuiKey::f12);
+  if ((taken.keys[key] && !letter) || taken.any_button || (taken.any_text && !letter)) return false;
+  taken.keys[key] = true;
+  taken.any_key |= acts_on_text(event.key);
+  tell_mods(io, event.mods);
+  io.KeysDown[key] = event.down;
+  if (event.down) taken.pressed.push_back({event.key, event.mods});
+  return true;
+}
+
+// false: it belongs to the next frame
+bool InputQueue::take(const InputEvent& event, Taken& taken) {
+  ImGuiIO& io = ImGui::GetIO();
+  switch (event.kind) {
+    case InputEvent::Kind::move:
+      if (taken.any_button) return false;  // a press is where the mouse was then
+      taken.moved = io.MouseDown[0] || io.MouseDown[1] || io.MouseDown[2];
+      x_ = event.x;
+      y_ = event.y;
+      io.MousePos = {static_cast<float>(x_), static_cast<float>(y_)};
+      return true;
+    case InputEvent::Kind::button:
+      return take_button(event, taken);
+    case InputEvent::Kind::wheel:
+      io.MouseWheelH += static_cast<float>(event.x);
+      io.MouseWheel += static_cast<float>(event.y);
+      return true;
+    case InputEvent::Kind::key:
+      return take_key(event, taken);
+    case InputEvent::Kind::text:
+      if (taken.any_button || taken.any_key) return false;
+      taken.any_text = true;
+      io.AddInputCharacter(event.letter);
+      return true;
+    case InputEvent::Kind::focus:
+      if (!event.down) let_go(io);
+      if (event.down) io.AddFocusEvent(true);
+      return true;
+  }
+  return true;
+}
+
+std::vector<KeyPress> InputQueue::frame() {
+  Taken taken;
+  while (!events_.empty() && take(events_.front(), taken)) events_.pop_front();
+  return std::move(taken.pressed);
 }
 
 }  // namespace limber

@@ -2,6 +2,7 @@
 // release within one frame become two frames, so that none is lost.
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <deque>
@@ -118,6 +119,20 @@ class InputQueue {
   double y() const { return y_; }
 
  private:
+  // what a frame has been told of already
+  struct Taken {
+    std::vector<KeyPress> pressed;
+    std::array<bool, 3> buttons{};
+    std::array<bool, static_cast<std::size_t>(GuiKey::count)> keys{};
+    bool any_button = false;
+    bool moved = false;  // with a button held
+    bool any_key = false;
+    bool any_text = false;
+  };
+  bool take(const InputEvent& event, Taken& taken);
+  static bool take_button(const InputEvent& event, Taken& taken);
+  static bool take_key(const InputEvent& event, Taken& taken);
+
   std::deque<InputEvent> events_;
   double x_ = -1, y_ = -1;
 };

@@ -30,7 +30,7 @@ std::string thing_text(const std::vector<std::string_view>& names) {
   if (is(0, "visuals") && is(1, "shape") && n == 3) return fmt::format("visuals:shape({})", lua_text(names[2]));
   if (is(0, "visuals") && n == 2 && !is(1, "shape")) return fmt::format("visuals.{}", names[1]);
   if (!is(0, "physics") || !is(1, "body") || n < 3) return {};
-  const std::string body = fmt::format("sim:body({})", lua_text(names[2]));
+  std::string body = fmt::format("sim:body({})", lua_text(names[2]));
   if (n == 3) return body;
   return n == 5 ? fmt::format("{}:{}({})", body, names[3], lua_text(names[4])) : std::string();
 }
@@ -41,7 +41,7 @@ std::string lua_path(const Tree& tree, const TreePlace& place) {
   std::vector<std::string_view> names;
   for (std::uint32_t at = place.node; at != 0; at = tree.nodes()[at].parent) names.push_back(tree.name(at));
   std::reverse(names.begin(), names.end());
-  const std::string thing = thing_text(names);
+  std::string thing = thing_text(names);
   if (place.row == nullptr || thing.empty()) return thing;
   if (place.row->kind != RowKind::action) return fmt::format("{}.{}", thing, place.row->name);
   return place.row->min_args == 0 ? fmt::format("{}:{}()", thing, place.row->name) : std::string();

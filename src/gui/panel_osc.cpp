@@ -111,7 +111,7 @@ class OscPanel : public Panel {
     desk.names.note(fmt::format("osc.line{}", i));
     if (line.more == 0) return;
     ImGui::SameLine();
-    ImGui::TextDisabled("\u00d7%llu", static_cast<unsigned long long>(line.more + 1));
+    ImGui::TextDisabled("\u00d7%llu", static_cast<unsigned long long>(line.more) + 1);
   }
 
   std::unique_ptr<Traffic::Watch> watch_;

@@ -23,7 +23,8 @@ std::string model_key(const std::string& path, const ImportOptions& options);
 class ModelLibrary {
  public:
   /// `instead`: what is read in place of the disk.
-  explicit ModelLibrary(std::shared_ptr<const FileSet> instead = nullptr) : instead_(instead), meshes_(instead) {}
+  explicit ModelLibrary(std::shared_ptr<const FileSet> instead = nullptr)
+      : instead_(instead), meshes_(std::move(instead)) {}
 
   Result<std::shared_ptr<const BodyModel>> load_urdf(const std::string& path, const ImportOptions& options = {});
   /// The meshes that the models share.

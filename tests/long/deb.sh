@@ -16,6 +16,8 @@ package=$(ls build/package/*.deb)
 root=$PWD/build/package/root
 debootstrap --variant=minbase bookworm "$root" >build/package/debootstrap.log
 cp "$package" "$root/tmp/limber.deb"
+mount -t proc proc "$root/proc"
+trap 'umount "$root/proc"' EXIT
 chroot "$root" apt-get install -y --no-install-recommends /tmp/limber.deb >build/package/install.log 2>&1
 there=$(chroot "$root" limber $play 2>/dev/null | tail -1)
 echo "here:  $here"

@@ -1,6 +1,7 @@
 // The store: its one door, marks, views, slots and generations, blocks that are used again.
 #include "params/store.h"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
