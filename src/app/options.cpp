@@ -216,7 +216,8 @@ void add_monitor(CLI::App& app, MonitorCommand& command) {
       "  limber monitor --changes '/physics/body/arm1/motor/*/target'");
   monitor->add_option("pattern", command.pattern, "of addresses, or with --changes of paths; left out: all")
       ->type_name("PATTERN");
-  monitor->add_flag("--changes", command.changes, "values that change: what hands set, or whatever the pattern reaches");
+  monitor->add_flag("--changes", command.changes,
+                    "values that change: what hands set, or whatever the pattern reaches");
   CLI::Option* in = monitor->add_flag("--in", command.only_in, "only what comes in");
   monitor->add_flag("--out", command.only_out, "only what goes out")->excludes(in);
   monitor->add_option("--pid", command.pid, "which program, when several play")->type_name("PID");
