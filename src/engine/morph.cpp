@@ -72,6 +72,10 @@ void Morph::index(const Store& store) {
   }
 }
 
+void Morph::announce(Store& store) const {
+  for (const Step& step : steps_) store.announce(step.id, *step.row, true);
+}
+
 void Morph::release(NodeId id, const Row& row) {
   if (id.slot >= first_.size()) return;
   for (std::size_t i = first_[id.slot]; i < steps_.size() && steps_[i].id == id; i++) {

@@ -30,6 +30,8 @@ class Morph {
   /// False: it is at its end, where every value is the preset's to the bit. Allocates nothing unless things came or
   /// went.
   bool advance(Store& store, double time);
+  /// Tells the store's listener of its rows, before it is among those that the listener releases rows of.
+  void announce(Store& store) const;
   /// From here on the row is somebody else's.
   void release(NodeId id, const Row& row);
   /// What part of its time is over, 0 .. 1.

@@ -256,10 +256,9 @@ Result<std::string> Presets::go(World& world, const Blend& blend, double seconds
   morphs_.release(**binding);
   std::vector<std::string> said{(*binding)->left_out(), lost_choices(store, **binding, blend)};
   if (seconds > 0) {
-    each_value(**binding, blend, [&](const auto& thing, const Row& row, const double* values) {
-      if (!same_bits(values, store.values(thing.id, row), row.width)) store.announce(thing.id, row, true);
-    });
-    morphs_.begin(Morph(store, **binding, blend, world.time(), seconds, easing));
+    Morph morph(store, **binding, blend, world.time(), seconds, easing);
+    morph.announce(store);
+    morphs_.begin(std::move(morph));
   } else {
     const Recalled told = limber::recall(store, **binding, blend);
     const std::size_t count = told.clamped + told.refused;
