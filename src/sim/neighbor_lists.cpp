@@ -49,7 +49,8 @@ void NeighborLists::make(Lists& lists, const Source& source) {
   for (std::size_t place = 0; place < order.size(); place++) {
     const std::size_t point = order[place];
     const PointQuery query{cloud.x[point], cloud.y[point], cloud.z[point], cloud.body[point]};
-    if (found_.size() <= at + 1 + order.size()) found_.resize(2 * (at + 1 + order.size()));
+    const std::size_t room = at + 1 + order.size() + kPointRoom;
+    if (found_.size() < room) found_.resize(2 * room);
     const std::uint32_t count = source.grid.near(query, 0, lists.reach, &found_[at + 1]);
     found_[at] = count;
     lists.first[part_at_[place]] = static_cast<std::uint32_t>(at + 1);

@@ -135,7 +135,7 @@ void NeighborSet::gather() {
   motions_gathered_ = false;
   lists_.begin();
   wholes_.clear();
-  found_.resize(cloud_.size());
+  found_.resize(cloud_.size() + kPointRoom);
   for (const auto& grid : grids_) grid->used = false;
   for (Answer& answer : answers_) {
     answer.used = false;

@@ -6,93 +6,16 @@
 #include <bit>
 #include <cmath>
 #include <cstring>
-#include <limits>
-
-#if defined(__SSE2__)
-#include <emmintrin.h>
-#endif
 
 namespace limber {
 
 namespace {
 
-constexpr std::size_t kBlock = 64;         // points whose hits fit a word
+constexpr std::size_t kLanes = 4;          // points that are copied together
 constexpr std::uint32_t kFewestCells = 4;  // on an axis: a cell and its two neighbours do not meet themselves
 constexpr float kFurthestCell = 1e9f;      // no point is that far
-constexpr float kNowhere = std::numeric_limits<float>::max();
 
-using Word = std::uint64_t;
 using FourPlaces [[gnu::vector_size(16)]] = std::uint32_t;
-
-#if defined(__SSE2__)
-
-// which of 16 points lie within, a bit each; arrays of whole lanes
-template <bool Least, bool Bodies>
-class Tester {
- public:
-  Tester(const PointQuery& q, float least, float most)
-      : x_(_mm_set1_ps(q.x)),
-        y_(_mm_set1_ps(q.y)),
-        z_(_mm_set1_ps(q.z)),
-        low_(_mm_set1_ps(least * least)),
-        high_(_mm_set1_ps(most * most)),
-        body_(_mm_set1_epi32(q.body)) {}
-
-  Word sixteen(const float* x, const float* y, const float* z, const std::int32_t* body) const {
-    const __m128i a = _mm_packs_epi32(four(x, y, z, body), four(x + 4, y + 4, z + 4, body + 4));
-    const __m128i b = _mm_packs_epi32(four(x + 8, y + 8, z + 8, body + 8), four(x + 12, y + 12, z + 12, body + 12));
-    return static_cast<Word>(static_cast<unsigned>(_mm_movemask_epi8(_mm_packs_epi16(a, b))));
-  }
-
- private:
-  __m128i four(const float* x, const float* y, const float* z, const std::int32_t* body) const {
-    const __m128 dx = _mm_sub_ps(x_, _mm_load_ps(x));
-    const __m128 dy = _mm_sub_ps(y_, _mm_load_ps(y));
-    const __m128 dz = _mm_sub_ps(z_, _mm_load_ps(z));
-    const __m128 d = _mm_add_ps(_mm_add_ps(_mm_mul_ps(dx, dx), _mm_mul_ps(dy, dy)), _mm_mul_ps(dz, dz));
-    __m128 within = _mm_cmple_ps(d, high_);
-    if constexpr (Least) within = _mm_and_ps(within, _mm_cmpge_ps(d, low_));
-    if constexpr (!Bodies) return _mm_castps_si128(within);
-    const __m128i same = _mm_cmpeq_epi32(body_, _mm_load_si128(reinterpret_cast<const __m128i*>(body)));
-    return _mm_andnot_si128(same, _mm_castps_si128(within));
-  }
-
-  __m128 x_, y_, z_, low_, high_;
-  __m128i body_;
-};
-
-#else
-
-template <bool Least, bool Bodies>
-class Tester {
- public:
-  Tester(const PointQuery& q, float least, float most) : q_(q), low_(least * least), high_(most * most) {}
-
-  Word sixteen(const float* x, const float* y, const float* z, const std::int32_t* body) const {
-    Word hits = 0;
-    for (int i = 0; i < 16; i++) {
-      const float dx = q_.x - x[i], dy = q_.y - y[i], dz = q_.z - z[i];
-      const float d = (dx * dx + dy * dy) + dz * dz;
-      if ((!Least || d >= low_) && d <= high_ && (!Bodies || body[i] != q_.body)) hits |= Word{1} << i;
-    }
-    return hits;
-  }
-
- private:
-  PointQuery q_;
-  float low_, high_;
-};
-
-#endif
-
-// bits of what lies within, of a block that ends at `count` at the latest
-template <class Test>
-Word hits_of_block(const Test& tester, const float* x, const float* y, const float* z, const std::int32_t* body,
-                   std::size_t count) {
-  Word hits = 0;
-  for (std::size_t k = 0; k < kBlock && k < count; k += 16) hits |= tester.sixteen(x + k, y + k, z + k, body + k) << k;
-  return hits;
-}
 
 }  // namespace
 
@@ -117,9 +40,9 @@ void PointCloud::add(float px, float py, float pz, std::int32_t of_body) {
   body.push_back(of_body);
 }
 
-// whole blocks, and one more that what begins within a block and a copy in lanes may reach into
+// and what is read behind the last, and written by a copy in lanes
 void PointGrid::Lanes::resize(std::size_t points) {
-  const std::size_t room = (points / kBlock + 2) * kBlock;
+  const std::size_t room = points + kLanes + kPointRoom;
   for (std::vector<float>* v : {&x, &y, &z}) v->resize(room);
   body.resize(room);
 }
@@ -240,27 +163,17 @@ void PointGrid::collect(std::uint32_t cell, bool ahead) {
   }
   collect_row(cell, -1, 1, 1, 0);
   for (int dy = -1; dy <= 1; dy++) collect_row(cell, -1, 1, dy, 1);
-  std::fill_n(candidates_.x.begin() + static_cast<std::ptrdiff_t>(count_), 16, kNowhere);
+  std::fill_n(candidates_.x.begin() + static_cast<std::ptrdiff_t>(count_), kPointRoom, kNowhere);
 }
 
-template <class Tester>
-std::uint32_t PointGrid::test(const Tester& tester, std::size_t from, std::uint32_t* out) const {
-  std::uint32_t found = 0;
-  // whole lanes: what comes before `from` is masked away
-  const std::size_t start = from & ~std::size_t{3};
-  Word wanted = ~Word{0} << (from - start);
-  for (std::size_t i = start; i < count_; i += kBlock) {
-    Word hits = wanted & hits_of_block(tester, &candidates_.x[i], &candidates_.y[i], &candidates_.z[i],
-                                       &candidates_.body[i], count_ - i);
-    for (; hits != 0; hits &= hits - 1) out[found++] = places_[i + static_cast<std::size_t>(std::countr_zero(hits))];
-    wanted = ~Word{0};
-  }
-  return found;
+PointArrays PointGrid::candidates_from(std::size_t from) const {
+  return {&candidates_.x[from],    &candidates_.y[from], &candidates_.z[from],
+          &candidates_.body[from], &places_[from],       count_ - from};
 }
 
 std::uint32_t PointGrid::near(const PointQuery& query, float least, float most, std::uint32_t* out) {
   collect(cell_at(query.x, query.y, query.z), false);
-  return test(Tester<true, true>(query, least, most), 0, out);
+  return finder_.find(candidates_from(0), query, least, most, true, out);
 }
 
 std::uint32_t PointGrid::near_once(std::uint32_t place, float least, float most, std::uint32_t* out) {
@@ -268,10 +181,8 @@ std::uint32_t PointGrid::near_once(std::uint32_t place, float least, float most,
   collect(cell, true);
   const std::size_t from = place - first_[cell] + 1;
   const PointQuery query{points_.x[place], points_.y[place], points_.z[place], points_.body[place]};
-  if (least > 0) return test(Tester<true, true>(query, least, most), from, out);
   // what most flocks are: one part a body, which does not find itself
-  return one_each_ ? test(Tester<false, false>(query, least, most), from, out)
-                   : test(Tester<false, true>(query, least, most), from, out);
+  return finder_.find(candidates_from(from), query, least, most, !one_each_, out);
 }
 
 }  // namespace limber

@@ -7,6 +7,8 @@
 #include <span>
 #include <vector>
 
+#include "sim/point_finder.h"
+
 namespace limber {
 
 /// Points as arrays, each with the number of the body that it belongs to.
@@ -21,21 +23,18 @@ struct PointCloud {
   void add(float px, float py, float pz, std::int32_t of_body);
 };
 
-/// What is looked for around a place.
-struct PointQuery {
-  float x, y, z;
-  std::int32_t body;  ///< Points of this body are passed over.
-};
-
 class PointGrid {
  public:
+  /// `lanes`: it finds the same whatever they are.
+  explicit PointGrid(PointLanes lanes = PointFinder::widest()) : finder_(lanes) {}
+
   /// Sorts a cloud for distances up to `reach` (>= 0); costs a few nanoseconds a point.
   void build(const PointCloud& cloud, float reach);
   float reach() const { return reach_; }
   std::size_t size() const { return order_.size(); }
 
   /// Places, in the grid's order, of all points with least <= distance <= most (<= reach), written to `out`, which has
-  /// room for size(); how many. Queries that follow each other within a cell cost least.
+  /// room for size() + kPointRoom; how many. Queries that follow each other within a cell cost least.
   std::uint32_t near(const PointQuery& query, float least, float most, std::uint32_t* out);
   /// The same around the point at a place, but of each pair of points only one finds the other: for sums over all
   /// pairs, at half the cost. Call it for every place, in order.
@@ -62,9 +61,9 @@ class PointGrid {
   void collect(std::uint32_t cell, bool ahead);
   void collect_row(std::uint32_t cell, int from, int to, int dy, int dz);
   void collect_run(std::uint32_t begin, std::uint32_t end);
-  template <class Tester>
-  std::uint32_t test(const Tester& tester, std::size_t from, std::uint32_t* out) const;
+  PointArrays candidates_from(std::size_t from) const;
 
+  PointFinder finder_;
   float reach_ = 0;
   bool one_each_ = false;
   float inverse_ = 1;  // cells a metre; a cell is a little wider than the reach
