@@ -35,8 +35,8 @@ void put(const Vec3& v, float* out) {
 }
 
 // a sum over neighbours as a mean, of motions beside the own one
-template <class Sum, class Push, class Motion>
-NeighborMeans mean_of(const Sum& sum, const Push& push, unsigned want, const Motion& own) {
+template <class Push>
+NeighborMeans mean_of(const NeighborSum& sum, const Push& push, unsigned want, const NeighborMotion& own) {
   NeighborMeans means;
   const float count = sum.offset[3];
   if (count == 0) return means;
@@ -195,7 +195,7 @@ void NeighborSet::fill_motions(Grid& grid, unsigned want) {
   const std::span<const std::uint32_t> order = grid.grid.order();
   grid.motions.resize(order.size());
   for (std::size_t k = 0; k < order.size(); k++) {
-    Motion& motion = grid.motions[k];
+    NeighborMotion& motion = grid.motions[k];
     const std::uint32_t i = order[k];
     if ((want & kWantVelocity) != 0) motion = motions_[i];
     motion.position[0] = cloud_.x[i];
@@ -358,7 +358,7 @@ NeighborMeans NeighborSet::sum_near(Grid& grid, const Spot& spot, double least, 
   const Lanes at{query.x, query.y, query.z, 0};
   Lanes offset{}, velocity{}, spin{}, push{};
   for (std::uint32_t j = 0; j < count; j++) {
-    const Motion& near = grid.motions[found_[j]];
+    const NeighborMotion& near = grid.motions[found_[j]];
     const Lanes r = load(near.position) - at;
     offset += r;
     if constexpr ((Want & kWantVelocity) != 0) {
@@ -367,7 +367,7 @@ NeighborMeans NeighborSet::sum_near(Grid& grid, const Spot& spot, double least, 
     }
     if constexpr ((Want & kWantPush) != 0) push += pushed(r, inverse_most);
   }
-  Sum sum;
+  NeighborSum sum{};
   Push pushes;
   store(sum.offset, offset);
   store(sum.velocity, velocity);
@@ -383,51 +383,34 @@ void NeighborSet::sum_each(Grid& grid, Answer& answer) {
   }
 }
 
+void NeighborSet::push_pairs(std::uint32_t place, std::span<const std::uint32_t> found, const NeighborMotion* motions,
+                             float inverse_most) {
+  const Lanes at = load(motions[place].position) - Lanes{0, 0, 0, 1};
+  Lanes push = load(pushes_[place].sum);
+  for (const std::uint32_t other : found) {
+    const Lanes away = pushed(load(motions[other].position) - at, inverse_most);
+    push += away;
+    float* const its = pushes_[other].sum;
+    store(its, load(its) - away);
+  }
+  store(pushes_[place].sum, push);
+}
+
 template <unsigned Want>
 void NeighborSet::sum_pairs(Grid& grid, Answer& answer) {
   const auto least = static_cast<float>(answer.least);
   const auto most = static_cast<float>(answer.most);
-  const float inverse_most = 1 / most;
-  const Lanes one{0, 0, 0, 1}, two{0, 0, 0, 2};
   const auto n = static_cast<std::uint32_t>(cloud_.size());
-  sums_.assign(n, Sum{});
+  sums_.assign(n, NeighborSum{});
   if constexpr ((Want & kWantPush) != 0) pushes_.assign(n, Push{});
-  // pointers of its own: what is written could change the vectors, for all that the compiler knows
-  const Motion* const motions = grid.motions.data();
-  Sum* const sums = sums_.data();
-  std::uint32_t* const found = found_.data();
+  const AddPairs add = add_pairs_by(PointFinder::widest(), (Want & kWantVelocity) != 0);
+  const NeighborMotion* const motions = grid.motions.data();
   for (std::uint32_t place = 0; place < n; place++) {
-    const std::uint32_t count = grid.grid.near_once(place, least, most, found);
+    const std::uint32_t count = grid.grid.near_once(place, least, most, found_.data());
+    const std::span<const std::uint32_t> found(found_.data(), count);
     if (count == 0) continue;
-    const Motion& own = motions[place];
-    const Lanes at = load(own.position) - one;
-    const Lanes own_velocity = load(own.velocity), own_spin = load(own.spin);
-    Sum& mine = sums[place];
-    Lanes offset = load(mine.offset), velocity = load(mine.velocity), spin = load(mine.spin), push{};
-    if constexpr ((Want & kWantPush) != 0) push = load(pushes_[place].sum);
-    for (std::uint32_t j = 0; j < count; j++) {
-      const Motion& near = motions[found[j]];
-      Sum& its = sums[found[j]];
-      const Lanes r = load(near.position) - at;
-      offset += r;
-      store(its.offset, load(its.offset) - (r - two));
-      if constexpr ((Want & kWantVelocity) != 0) {
-        velocity += load(near.velocity);
-        spin += load(near.spin);
-        store(its.velocity, load(its.velocity) + own_velocity);
-        store(its.spin, load(its.spin) + own_spin);
-      }
-      if constexpr ((Want & kWantPush) != 0) {
-        const Lanes away = pushed(r, inverse_most);
-        push += away;
-        float* const its_push = pushes_[found[j]].sum;
-        store(its_push, load(its_push) - away);
-      }
-    }
-    store(mine.offset, offset);
-    store(mine.velocity, velocity);
-    store(mine.spin, spin);
-    if constexpr ((Want & kWantPush) != 0) store(pushes_[place].sum, push);
+    add(place, found, motions, sums_.data());
+    if constexpr ((Want & kWantPush) != 0) push_pairs(place, found, motions, 1 / most);
   }
   const Push none{};
   place_.assign(parts_.size(), kNoPlace);
@@ -437,13 +420,13 @@ void NeighborSet::sum_pairs(Grid& grid, Answer& answer) {
     const std::uint32_t place = place_[answer.at[i]];
     if (place == kNoPlace) continue;  // its body is out of the world
     const Push& push = (Want & kWantPush) != 0 ? pushes_[place] : none;
-    answer.means[i] = mean_of(sums[place], push, Want, motions[place]);
+    answer.means[i] = mean_of(sums_[place], push, Want, motions[place]);
   }
 }
 
-NeighborMeans NeighborSet::means_of(const Sum& sum, const Push& push, unsigned want, const Spot& spot) const {
+NeighborMeans NeighborSet::means_of(const NeighborSum& sum, const Push& push, unsigned want, const Spot& spot) const {
   const double* const own = world_.store().live().data() + spot.live;
-  Motion motion{};
+  NeighborMotion motion{};
   if ((want & kWantVelocity) != 0) {
     put(vec3_at(own + part_offsets().velocity), motion.velocity);
     put(vec3_at(own + part_offsets().spin), motion.spin);

@@ -10,6 +10,7 @@
 #include "base/id.h"
 #include "base/vec.h"
 #include "sim/neighbor_lists.h"
+#include "sim/neighbor_sums.h"
 #include "sim/point_grid.h"
 
 namespace limber {
@@ -72,20 +73,14 @@ class NeighborSet {
     bool centered = true;       // its centre of mass is the link frame's origin
     Vec3 center{0};             // else where it is in the link frame
   };
-  struct alignas(16) Motion {  // of a point; the fourth lane of its position is 1
-    float position[4], velocity[4], spin[4];
-  };
-  struct alignas(16) Sum {  // over a point's neighbours; the fourth lane of the offsets counts them
-    float offset[4], velocity[4], spin[4];
-  };
   struct alignas(16) Push {
     float sum[4];
   };
   struct Grid {
     PointGrid grid;
-    bool used = false;            // in this tick
-    unsigned filled = 0;          // 1: positions, 2: velocities
-    std::vector<Motion> motions;  // in the grid's order
+    bool used = false;                    // in this tick
+    unsigned filled = 0;                  // 1: positions, 2: velocities
+    std::vector<NeighborMotion> motions;  // in the grid's order
   };
   struct Answer {
     double least = 0, most = 0;
@@ -130,9 +125,11 @@ class NeighborSet {
   /// All parts' neighbours, each pair once.
   template <unsigned Want>
   void sum_pairs(Grid& grid, Answer& answer);
+  void push_pairs(std::uint32_t place, std::span<const std::uint32_t> found, const NeighborMotion* motions,
+                  float inverse_most);
   template <unsigned Want>
   void sum(Grid& grid, Answer& answer);
-  NeighborMeans means_of(const Sum& sum, const Push& push, unsigned want, const Spot& spot) const;
+  NeighborMeans means_of(const NeighborSum& sum, const Push& push, unsigned want, const Spot& spot) const;
 
   World& world_;
   std::vector<Part*> parts_;
@@ -152,9 +149,9 @@ class NeighborSet {
   NeighborMeans alone_;               // of one that is not in the set
   std::vector<std::uint32_t> found_;  // scratch
   std::vector<std::uint32_t> place_;  // scratch: in the grid, of parts_
-  std::vector<Sum> sums_;             // scratch, by place
+  std::vector<NeighborSum> sums_;     // scratch, by place
   std::vector<Push> pushes_;
-  std::vector<Motion> motions_;  // scratch, of the cloud's points: gathered in order, handed out to grids
+  std::vector<NeighborMotion> motions_;  // scratch, of the cloud's points: gathered in order, handed out to grids
   bool motions_gathered_ = false;
   std::vector<Totals> of_body_;  // scratch, by ordinal
 };
