@@ -13,6 +13,7 @@
 #include "app/bench_lua.h"
 #include "app/bench_osc.h"
 #include "app/bench_panel.h"
+#include "app/bench_picture.h"
 #include "app/bench_preset.h"
 #include "app/bench_query.h"
 #include "app/bench_reload.h"
@@ -121,6 +122,7 @@ const std::vector<BenchScene>& bench_scenes() {
       {"osc-latency", "from message to answer: /ping, and a value in force", &bench_osc_latency},
       {"osc-out", "frames of 1000 bodies in three streams", &bench_osc_out},
       {"panel", "a frame of the panel beside 1000 arms, without drawing it", &bench_panel},
+      {"picture", "frames a second without a window: 16 arms small, 1000 arms large", &bench_picture},
       {"query", "16 arms while 100 WebSocket clients listen to 50 values each, and alone", &bench_query},
   };
   return scenes;

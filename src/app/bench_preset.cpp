@@ -14,9 +14,9 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 // the arms with a hand; times are the processor's, so that other programs' turns do not count
-class Stand {
+class ArmPresets {
  public:
-  explicit Stand(int arms) : arms_(bench_arm_scene(arms)) {
+  explicit ArmPresets(int arms) : arms_(bench_arm_scene(arms)) {
     for (int i = 0; i < 3; i++) arms_.tick();
     send({"/transport/pause", {}});
     empty_ = ticks(8).at(0.5);
@@ -58,37 +58,37 @@ Json least_and_median(const Samples& samples) {
 
 Json bench_preset(const BenchOptions& options) {
   const int count = options.ticks > 0 ? options.ticks : 8;
-  Stand stand(1000);
-  stand.send({"/physics/part/restitution", {Arg::of(0.1)}});
-  const double sudden_store = stand.preset("store", "sudden");
+  ArmPresets bench(1000);
+  bench.send({"/physics/part/restitution", {Arg::of(0.1)}});
+  const double sudden_store = bench.preset("store", "sudden");
   // something comes, and for a while nothing does: the next store has been made ready
-  LIMBER_CHECK(stand.engine().world().add_body("more").ok());
-  stand.ticks(200);
-  const double first_store = stand.preset("store", "a");
+  LIMBER_CHECK(bench.engine().world().add_body("more").ok());
+  bench.ticks(200);
+  const double first_store = bench.preset("store", "a");
   Samples store, recall;
-  for (int i = 0; i < count; i++) store.add(stand.preset("store", "again"));
+  for (int i = 0; i < count; i++) store.add(bench.preset("store", "again"));
 
   double value = 0.1;
   for (const char* row : {"mass", "linear_damping", "angular_damping", "friction", "rolling_friction", "restitution"})
-    stand.send({fmt::format("/physics/part/{}", row), {Arg::of(value += 0.05)}});
-  stand.preset("store", "b");
-  const double first_recall = stand.preset("recall", "a");
-  for (int i = 0; i < count; i++) recall.add(stand.preset("recall", i % 2 == 0 ? "b" : "a"));
+    bench.send({fmt::format("/physics/part/{}", row), {Arg::of(value += 0.05)}});
+  bench.preset("store", "b");
+  const double first_recall = bench.preset("recall", "a");
+  for (int i = 0; i < count; i++) recall.add(bench.preset("recall", i % 2 == 0 ? "b" : "a"));
 
-  stand.preset("recall", "b");
+  bench.preset("recall", "b");
   // ticks with a morph and without, by turns: they take longer as the arms fall
-  stand.send({"/transport/play", {}});
+  bench.send({"/transport/play", {}});
   Samples tick, quiet, morphing;
   for (int i = 0; i < count; i++) {
-    tick.add(stand.ticks(1).at(0));
-    quiet.add(stand.of_values());
-    stand.send({"/preset/recall", {Arg::of("a"), Arg::of(60.0), Arg::of("linear")}});
-    stand.ticks(1);
-    morphing.add(stand.of_values());
-    stand.send({"/preset/stop", {}});
+    tick.add(bench.ticks(1).at(0));
+    quiet.add(bench.of_values());
+    bench.send({"/preset/recall", {Arg::of("a"), Arg::of(60.0), Arg::of("linear")}});
+    bench.ticks(1);
+    morphing.add(bench.of_values());
+    bench.send({"/preset/stop", {}});
   }
   const double cost = morphing.at(0) - quiet.at(0);
-  const Preset& preset = *stand.engine().presets().list().front();
+  const Preset& preset = *bench.engine().presets().list().front();
   return {{"things", preset.shape->things().size()},
           {"rows", preset.shape->row_count()},
           {"numbers", preset.values.size()},

@@ -124,7 +124,7 @@ void DrawList::see(const Form& form, const Pose& pose, const DrawEye& eye) {
   instance.turn[3] = real(at.rotation.w);
   const double depth = glm::dot(at.position - eye.at, eye.forward);
   const double pixels = form.reach * eye.pixels / std::max(depth, 0.1);
-  const int detail = std::min(kDetails - 1, (pixels > 40 ? 0 : pixels > 12 ? 1 : 2) + eye.coarser);
+  const int detail = std::min(kDetails - 1, (pixels > 40 ? 0 : pixels > 12 ? 1 : pixels > 4 ? 2 : 3) + eye.coarser);
   const auto key = form.mesh_number * kDetails + static_cast<std::uint32_t>(detail);
   (paint.alpha < 1 ? glassy_ : solid_).push_back({instance, key, real(depth)});
   places_.push_back(place);

@@ -6,7 +6,9 @@
 #include <cmath>
 #include <map>
 #include <numbers>
+#include <string_view>
 #include <tuple>
+#include <unordered_map>
 #include <utility>
 
 namespace limber {
@@ -64,9 +66,9 @@ void add_quarter(std::vector<Rim>& profile, double corner_r, double corner_z, bo
 }
 
 MeshVertices round_mesh(ShapeKind kind, int detail) {
-  const int around = std::array{40, 20, 12}[static_cast<std::size_t>(detail)];
-  const int quarter = std::array{10, 5, 3}[static_cast<std::size_t>(detail)];
-  const int bevel = std::array{3, 2, 1}[static_cast<std::size_t>(detail)];
+  const int around = std::array{40, 20, 12, 8}[static_cast<std::size_t>(detail)];
+  const int quarter = std::array{10, 5, 3, 3}[static_cast<std::size_t>(detail)];
+  const int bevel = std::array{3, 2, 1, 1}[static_cast<std::size_t>(detail)];
   std::vector<Rim> profile;
   if (kind == ShapeKind::sphere || kind == ShapeKind::capsule) {
     const double end = kind == ShapeKind::capsule ? 1 : 0;
@@ -130,6 +132,50 @@ MeshVertices box_mesh(int detail) {
   return out;
 }
 
+// the same with each bevel as one flat strip, each corner as a triangle
+MeshVertices chamfered_box() {
+  MeshVertices out;
+  // the corner of a face across `axis`; `signs` are of all three axes
+  const auto at = [](int axis, const std::array<int, 3>& signs) {
+    Point p{{signs[0], signs[1], signs[2]}, Vec3(0)};
+    p.normal[axis] = signs[static_cast<std::size_t>(axis)];
+    return vertex_of(p);
+  };
+  const auto add = [&out](const std::array<MeshVertex, 3>& t, bool turned) {
+    out.insert(out.end(), {t[0], turned ? t[2] : t[1], turned ? t[1] : t[2]});
+  };
+  for (const int side : {-1, 1}) {
+    for (int axis = 0; axis < 3; axis++) {
+      const auto u = static_cast<std::size_t>((axis + 1) % 3);
+      const auto v = static_cast<std::size_t>((axis + 2) % 3);
+      const auto corner = [&](int a, int b) {
+        std::array<int, 3> signs{};
+        signs[static_cast<std::size_t>(axis)] = side;
+        signs[u] = a;
+        signs[v] = b;
+        return signs;
+      };
+      add({at(axis, corner(-1, -1)), at(axis, corner(1, -1)), at(axis, corner(1, 1))}, side < 0);
+      add({at(axis, corner(-1, -1)), at(axis, corner(1, 1)), at(axis, corner(-1, 1))}, side < 0);
+      // the strips to the neighbour across u: along v
+      for (const int a : {-1, 1}) {
+        const MeshVertex low = at(axis, corner(a, -1)), high = at(axis, corner(a, 1));
+        const MeshVertex beyond_low = at(static_cast<int>(u), corner(a, -1));
+        const MeshVertex beyond_high = at(static_cast<int>(u), corner(a, 1));
+        add({low, beyond_low, beyond_high}, side * a < 0);
+        add({low, beyond_high, high}, side * a < 0);
+      }
+    }
+    for (const int a : {-1, 1}) {
+      for (const int b : {-1, 1}) {
+        const std::array<int, 3> signs = {side, a, b};
+        add({at(0, signs), at(1, signs), at(2, signs)}, side * a * b < 0);
+      }
+    }
+  }
+  return out;
+}
+
 struct Soup {
   std::vector<Vec3> points;
   std::vector<std::array<unsigned, 3>> triangles;
@@ -184,7 +230,7 @@ Soup gathered(const Soup& fine, int cells) {
 MeshVertices primitive_mesh(ShapeKind kind, int detail) {
   switch (kind) {
     case ShapeKind::box:
-      return box_mesh(detail);
+      return detail == kDetails - 1 ? chamfered_box() : box_mesh(detail);
     case ShapeKind::sphere:
     case ShapeKind::capsule:
     case ShapeKind::cylinder:
@@ -219,6 +265,26 @@ MeshVertices model_mesh(const MeshModel& model, int detail) {
       }
       out.push_back(vertex_of({soup.points[corner], normalized(sum)}));
     }
+  }
+  return out;
+}
+
+IndexedMesh indexed(const MeshVertices& triangles) {
+  IndexedMesh out;
+  std::unordered_map<std::string_view, std::uint32_t> known;  // by the bytes of a vertex
+  out.indices.reserve(triangles.size());
+  known.reserve(triangles.size() / 3);
+  for (std::size_t i = 0; i + 2 < triangles.size(); i += 3) {
+    std::array<std::uint32_t, 3> t{};
+    for (std::size_t k = 0; k < 3; k++) {
+      const MeshVertex& vertex = triangles[i + k];
+      const std::string_view bytes(reinterpret_cast<const char*>(&vertex), sizeof vertex);
+      const auto [found, fresh] = known.try_emplace(bytes, static_cast<std::uint32_t>(out.vertices.size()));
+      if (fresh) out.vertices.push_back(vertex);
+      t[k] = found->second;
+    }
+    // at a pole two of the three are one
+    if (t[0] != t[1] && t[1] != t[2] && t[0] != t[2]) out.indices.insert(out.indices.end(), t.begin(), t.end());
   }
   return out;
 }

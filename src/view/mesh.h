@@ -19,12 +19,19 @@ struct MeshVertex {
 using MeshVertices = std::vector<MeshVertex>;
 
 /// Levels of detail: 0 is the finest.
-inline constexpr int kDetails = 3;
+inline constexpr int kDetails = 4;
 
 /// A primitive's; empty for planes, meshes, compounds. [any]
 MeshVertices primitive_mesh(ShapeKind kind, int detail);
 /// A file's: normals are smooth over edges of less than 35°; coarser details gather what is near to each other. [any]
 MeshVertices model_mesh(const MeshModel& model, int detail);
+
+/// The same triangles with each vertex once, so that a graphics card works each out once.
+struct IndexedMesh {
+  MeshVertices vertices;
+  std::vector<std::uint32_t> indices;  ///< Three a triangle.
+};
+IndexedMesh indexed(const MeshVertices& triangles);
 
 /// The two numbers of the formula for a primitive: half its size without the rounding, and the radius of that.
 struct MeshSize {

@@ -120,13 +120,16 @@ const Renderer::GpuMesh& Renderer::mesh(const MeshKey& key, int detail) {
   const auto [found, fresh] = meshes_.try_emplace({key, detail});
   GpuMesh& made = found->second;
   if (!fresh) return made;
-  const MeshVertices vertices =
-      key.model != nullptr ? model_mesh(*key.model, detail) : primitive_mesh(key.kind, detail);
-  made = {GlVertexArray::make(), GlBuffer::make(), static_cast<GLsizei>(vertices.size())};
+  const IndexedMesh own =
+      indexed(key.model != nullptr ? model_mesh(*key.model, detail) : primitive_mesh(key.kind, detail));
+  made = {GlVertexArray::make(), GlBuffer::make(), GlBuffer::make(), static_cast<GLsizei>(own.indices.size())};
   glBindVertexArray(*made.array);
-  glBindBuffer(GL_ARRAY_BUFFER, *made.vertices);
-  glBufferData(GL_ARRAY_BUFFER, static_cast<GLsizeiptr>(vertices.size() * sizeof(MeshVertex)), vertices.data(),
-               GL_STATIC_DRAW);
+  const auto fill = [](GLenum target, const GlBuffer& buffer, const auto& values) {
+    glBindBuffer(target, *buffer);
+    glBufferData(target, static_cast<GLsizeiptr>(values.size() * sizeof values[0]), values.data(), GL_STATIC_DRAW);
+  };
+  fill(GL_ELEMENT_ARRAY_BUFFER, made.indices, own.indices);
+  fill(GL_ARRAY_BUFFER, made.vertices, own.vertices);
   glVertexAttribPointer(0, 3, GL_FLOAT, GL_FALSE, sizeof(MeshVertex), offset(offsetof(MeshVertex, corner)));
   glVertexAttribPointer(1, 3, GL_FLOAT, GL_FALSE, sizeof(MeshVertex), offset(offsetof(MeshVertex, normal)));
   for (GLuint i = 0; i < 7; i++) {
@@ -158,7 +161,7 @@ void Renderer::draw_batches(const std::vector<Batch>& batches, int coarser, bool
     glBindVertexArray(*gpu.array);
     glBindBuffer(GL_ARRAY_BUFFER, *instances_);
     describe_instance(batch.first);
-    glDrawArraysInstanced(GL_TRIANGLES, 0, gpu.count, static_cast<GLsizei>(batch.count));
+    glDrawElementsInstanced(GL_TRIANGLES, gpu.count, GL_UNSIGNED_INT, nullptr, static_cast<GLsizei>(batch.count));
   }
 }
 
@@ -343,6 +346,8 @@ void Renderer::draw_over(const std::function<void()>& draw) const {
   draw();
   glBindFramebuffer(GL_FRAMEBUFFER, 0);
 }
+
+void Renderer::finish() { glFinish(); }
 
 void Renderer::show(int width, int height) const {
   glDisable(GL_FRAMEBUFFER_SRGB);  // the bytes as they are

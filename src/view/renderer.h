@@ -33,6 +33,8 @@ class Renderer {
   void draw_over(const std::function<void()>& draw) const;
   /// The picture drawn last. [main]
   Pixels read() const;
+  /// Returns when the picture is drawn. [main]
+  static void finish();
   /// Copies it into the window's own framebuffer, stretched to that size. [main]
   void show(int width, int height) const;
 
@@ -46,7 +48,7 @@ class Renderer {
   struct Grade;
   struct GpuMesh {
     GlVertexArray array;
-    GlBuffer vertices;
+    GlBuffer vertices, indices;
     GLsizei count = 0;
   };
   /// A depth texture to draw into.

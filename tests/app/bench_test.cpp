@@ -57,6 +57,18 @@ TEST(Bench, TheSameSceneHasTheSameHashWhateverRunsBeside) {
   EXPECT_NE(alone["hash"], longer["hash"]);
 }
 
+TEST(Bench, DrawsSmallAndLarge) {
+  BenchOptions options;
+  options.ticks = 2;
+  const Json figures = figures_of("picture", options);
+  for (const char* size : {"small", "large"}) {
+    EXPECT_GT(figures[size]["frames_a_second"], 0) << figures.dump();
+    EXPECT_LE(figures[size]["processor_us"]["min"], figures[size]["frame_us"]["p99"]);
+  }
+  EXPECT_EQ(figures["small"]["parts"], 16 * 17);
+  EXPECT_EQ(figures["large"]["parts"], 17000);
+}
+
 TEST(Bench, RecordsAndReplaysATake) {
   BenchOptions options;
   options.ticks = 20;

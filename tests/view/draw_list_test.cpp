@@ -65,7 +65,7 @@ TEST(DrawList, OneBatchForAllOfOneShapeAndDetail) {
   list.gather(*now, *now, 1, {{0, -10, 0}, {0, 1, 0}, 1e6, 2});
   EXPECT_EQ(list.opaque()[0].detail, 2);
   list.gather(*now, *now, 1, {{0, -1e5, 0}, {0, 1, 0}, 1000, 0});
-  EXPECT_EQ(list.opaque()[0].detail, 2) << "what is far is coarse";
+  EXPECT_EQ(list.opaque()[0].detail, kDetails - 1) << "what is far is coarse";
 }
 
 TEST(DrawList, GlassIsSortedFurthestFirstAndCastsNoShadow) {

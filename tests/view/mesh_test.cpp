@@ -2,6 +2,7 @@
 #include "view/mesh.h"
 
 #include <algorithm>
+#include <cstring>
 #include <numbers>
 
 #include "view/stage.h"
@@ -139,6 +140,30 @@ TEST(Mesh, BadIndicesAreLeftOut) {
   model.triangles.insert(model.triangles.end(), {0, 1, 8, 7});
   EXPECT_EQ(model_mesh(model, 0).size(), 36u);
   EXPECT_TRUE(model_mesh(MeshModel{}, 2).empty());
+}
+
+TEST(Mesh, EachVertexIsThereOnce) {
+  for (const ShapeKind kind : {ShapeKind::box, ShapeKind::sphere, ShapeKind::capsule, ShapeKind::cylinder}) {
+    for (int detail = 0; detail < kDetails; detail++) {
+      const MeshVertices triangles = primitive_mesh(kind, detail);
+      const IndexedMesh mesh = indexed(triangles);
+      EXPECT_LT(mesh.vertices.size(), triangles.size() / 2);
+      // the triangles that have an area, in their order
+      MeshVertices again;
+      for (const std::uint32_t i : mesh.indices) again.push_back(mesh.vertices.at(i));
+      const auto same = [](const MeshVertex& a, const MeshVertex& b) { return std::memcmp(&a, &b, sizeof a) == 0; };
+      std::size_t at = 0;
+      for (std::size_t i = 0; i + 2 < triangles.size(); i += 3) {
+        const MeshVertex* const t = &triangles[i];
+        if (same(t[0], t[1]) || same(t[1], t[2]) || same(t[0], t[2])) continue;
+        for (int k = 0; k < 3; k++) ASSERT_TRUE(same(again.at(at++), t[k])) << i;
+      }
+      EXPECT_EQ(at, again.size());
+    }
+  }
+  EXPECT_EQ(indexed(primitive_mesh(ShapeKind::box, kDetails - 1)).vertices.size(), 24U);
+  EXPECT_EQ(indexed(primitive_mesh(ShapeKind::box, kDetails - 1)).indices.size(), 3U * 44);
+  EXPECT_TRUE(indexed({}).indices.empty());
 }
 
 }  // namespace

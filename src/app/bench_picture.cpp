@@ -1,0 +1,98 @@
+// All arms are seen, in motion; each frame is waited for. What the simulation takes between frames is not counted.
+#include "app/bench_picture.h"
+
+#include <algorithm>
+#include <memory>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "app/bench_arms.h"
+#include "app/bench_times.h"
+#include "app/paths.h"
+#include "base/check.h"
+#include "view/gl.h"
+#include "view/offscreen.h"
+#include "view/renderer.h"
+
+namespace limber {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+struct PictureScene {
+  int arms;
+  Quality quality;
+  const char* quality_name;
+  int width, height;
+};
+
+constexpr int kFramesATick = 2;  // the display is twice as fast as the simulation
+
+// from above a corner, the whole field in sight
+void look_at_all(BenchArms& arms) {
+  World& world = arms.engine().world();
+  Vec3 low(0), high(0);
+  for (const auto& body : world.bodies()) {
+    for (const auto& part : body->parts()) {
+      if (part->is_static()) continue;
+      low = glm::min(low, part->pose().position);
+      high = glm::max(high, part->pose().position);
+    }
+  }
+  const Vec3 middle = 0.5 * (low + high);
+  const Vec3 eye = middle + glm::length(high - low) * Vec3(0.6, -0.6, 0.45);
+  Store& store = world.store();
+  LIMBER_CHECK(store.set(world.visuals().camera().id(), "eye", {&eye.x, 3}).ok());
+  LIMBER_CHECK(store.set(world.visuals().camera().id(), "target", {&middle.x, 3}).ok());
+}
+
+// `warm`: frames in which meshes are handed over and the driver finds its pace
+Json draw(const PictureScene& scene, int warm, int frames) {
+  Result<std::unique_ptr<Renderer>> renderer = Renderer::make(shader_dir(), scene.quality);
+  if (!renderer) return {{"error", renderer.error()}};
+  BenchArms arms(bench_arm_scene(scene.arms));
+  const auto tick = [&] {
+    arms.drive(arms.time());
+    arms.tick();
+    return arms.link().snapshots.read();
+  };
+  std::shared_ptr<const Snapshot> before = tick();
+  look_at_all(arms);
+  std::shared_ptr<const Snapshot> now = tick();
+  Samples whole, own;
+  for (int i = -warm; i < frames; i++) {
+    if ((i + warm) % kFramesATick == 0) before = std::exchange(now, tick());
+    const double mix = 1.0 * ((i + warm) % kFramesATick) / kFramesATick;
+    const double begin = bench_seconds();
+    const double begin_own = thread_seconds();
+    const Result<void> drawn = (*renderer)->draw(*before, *now, mix, scene.width, scene.height);
+    if (!drawn) return {{"error", drawn.error()}};
+    const double submitted = thread_seconds();
+    (*renderer)->finish();
+    if (i < 0) continue;
+    own.add(submitted - begin_own);
+    whole.add(bench_seconds() - begin);
+  }
+  return {{"quality", scene.quality_name},    {"size", fmt::format("{} x {}", scene.width, scene.height)},
+          {"parts", scene.arms * 17},         {"frames_a_second", rounded(1 / whole.at(0.5), 1)},
+          {"frame_us", whole.microseconds()}, {"processor_us", own.microseconds()}};
+}
+
+}  // namespace
+
+nlohmann::ordered_json bench_picture(const BenchOptions& options) {
+  const Result<std::unique_ptr<Offscreen>> context = Offscreen::make();
+  if (!context) return {{"error", context.error()}};
+  const bool software = gl_is_software();
+  // software draws the large one for seconds
+  const int warm = software ? 2 : 10;
+  const int frames = options.ticks > 0 ? options.ticks : software ? 100 : 600;
+  const int frames_large = software ? std::min(frames, 3) : frames;
+  return {{"drawn_by", gl_driver()},
+          {"small", draw({16, Quality::low, "low", 640, 360}, warm, frames)},
+          {"large", draw({1000, Quality::high, "high", 1920, 1080}, warm, frames_large)}};
+}
+
+}  // namespace limber
