@@ -197,7 +197,10 @@ void NeighborSet::fill_motions(Grid& grid, unsigned want) {
   for (std::size_t k = 0; k < order.size(); k++) {
     NeighborMotion& motion = grid.motions[k];
     const std::uint32_t i = order[k];
-    if ((want & kWantVelocity) != 0) motion = motions_[i];
+    if ((want & kWantVelocity) != 0) {
+      store(motion.velocity, load(motions_[i].velocity));
+      store(motion.spin, load(motions_[i].spin));
+    }
     motion.position[0] = cloud_.x[i];
     motion.position[1] = cloud_.y[i];
     motion.position[2] = cloud_.z[i];

@@ -73,6 +73,9 @@ class NeighborSet {
     bool centered = true;       // its centre of mass is the link frame's origin
     Vec3 center{0};             // else where it is in the link frame
   };
+  struct alignas(32) Moving {  // as in NeighborMotion
+    float velocity[4], spin[4];
+  };
   struct alignas(16) Push {
     float sum[4];
   };
@@ -151,7 +154,7 @@ class NeighborSet {
   std::vector<std::uint32_t> place_;  // scratch: in the grid, of parts_
   std::vector<NeighborSum> sums_;     // scratch, by place
   std::vector<Push> pushes_;
-  std::vector<NeighborMotion> motions_;  // scratch, of the cloud's points: gathered in order, handed out to grids
+  std::vector<Moving> motions_;  // scratch, of the cloud's points: gathered in order, handed out to grids
   bool motions_gathered_ = false;
   std::vector<Totals> of_body_;  // scratch, by ordinal
 };

@@ -12,6 +12,7 @@ namespace {
 
 constexpr float kUnseen = 0.002F;  // of alpha: what is clearer is not drawn
 constexpr float kCasts = 0.5F;     // and casts no shadow
+constexpr std::size_t kMeasured = 2000;
 
 float real(double v) { return static_cast<float>(v); }
 glm::vec3 real(const Vec3& v) { return {real(v.x), real(v.y), real(v.z)}; }
@@ -156,47 +157,68 @@ void DrawList::gather(const Snapshot& before, const Snapshot& now, double mix, c
 }
 
 // the middle of what stands between the outer tenths along each axis, and the distance that nine of ten don't reach:
-// one of many that falls for ever moves neither; of a few each counts
+// one of many that falls for ever moves neither; of a few each counts, of thousands some speak for all
 void DrawList::measure() {
   center_ = glm::vec3(0);
   radius_ = 1;
   if (places_.empty()) return;
-  numbers_.resize(places_.size());
+  const std::size_t stride = (places_.size() + kMeasured - 1) / kMeasured;
+  const auto fill = [&](auto&& number) {
+    numbers_.clear();
+    for (std::size_t i = 0; i < places_.size(); i += stride) numbers_.push_back(number(i));
+  };
   const auto ranked = [&](double rank) {
     std::nth_element(numbers_.begin(), numbers_.begin() + static_cast<std::ptrdiff_t>(rank), numbers_.end());
     return numbers_[static_cast<std::size_t>(rank)];
   };
-  const auto last = static_cast<double>(places_.size() - 1);
+  const auto last = static_cast<double>((places_.size() - 1) / stride);
   for (int axis = 0; axis < 3; axis++) {
-    for (std::size_t i = 0; i < places_.size(); i++) numbers_[i] = places_[i][axis];
+    fill([&](std::size_t i) { return places_[i][axis]; });
     const float low = ranked(std::floor(0.1 * last));
     center_[axis] = (low + ranked(std::ceil(0.9 * last))) / 2;
   }
-  for (std::size_t i = 0; i < places_.size(); i++) numbers_[i] = glm::distance(places_[i], center_) + reaches_[i];
+  fill([&](std::size_t i) { return glm::distance(places_[i], center_) + reaches_[i]; });
   radius_ = ranked(std::ceil(0.9 * last));
+}
+
+// by mesh and detail, else in their order
+void DrawList::order_solid() {
+  first_.assign(meshes_.size() * kDetails + 1, 0);
+  for (const Seen& s : solid_) first_[s.key + 1]++;
+  for (std::size_t k = 1; k < first_.size(); k++) first_[k] += first_[k - 1];
+  order_.resize(solid_.size());
+  for (std::size_t i = 0; i < solid_.size(); i++) order_[first_[solid_[i].key]++] = static_cast<std::uint32_t>(i);
+}
+
+void DrawList::order_glassy() {
+  order_.resize(glassy_.size());
+  for (std::size_t i = 0; i < order_.size(); i++) order_[i] = static_cast<std::uint32_t>(i);
+  std::stable_sort(order_.begin(), order_.end(),
+                   [this](std::uint32_t a, std::uint32_t b) { return glassy_[a].depth > glassy_[b].depth; });
+}
+
+void DrawList::add_in_order(std::vector<Batch>& batches, const std::vector<Seen>& seen) {
+  batches.clear();
+  std::uint32_t last = 0;
+  for (const std::uint32_t i : order_) {
+    const Seen& s = seen[i];
+    const bool casts = s.instance.alpha >= kCasts;
+    if (batches.empty() || s.key != last || batches.back().casts != casts) {
+      batches.push_back({meshes_[s.key / kDetails], static_cast<int>(s.key % kDetails),
+                         static_cast<std::uint32_t>(instances_.size()), 0, casts});
+      last = s.key;
+    }
+    instances_.push_back(s.instance);
+    batches.back().count++;
+  }
 }
 
 void DrawList::put_together() {
   instances_.clear();
-  opaque_.clear();
-  clear_.clear();
-  const auto add = [this](std::vector<Batch>& batches, const std::vector<Seen>& seen) {
-    std::uint32_t last = 0;
-    for (const Seen& s : seen) {
-      const bool casts = s.instance.alpha >= kCasts;
-      if (batches.empty() || s.key != last || batches.back().casts != casts) {
-        batches.push_back({meshes_[s.key / kDetails], static_cast<int>(s.key % kDetails),
-                           static_cast<std::uint32_t>(instances_.size()), 0, casts});
-        last = s.key;
-      }
-      instances_.push_back(s.instance);
-      batches.back().count++;
-    }
-  };
-  std::stable_sort(solid_.begin(), solid_.end(), [](const Seen& a, const Seen& b) { return a.key < b.key; });
-  std::stable_sort(glassy_.begin(), glassy_.end(), [](const Seen& a, const Seen& b) { return a.depth > b.depth; });
-  add(opaque_, solid_);
-  add(clear_, glassy_);
+  order_solid();
+  add_in_order(opaque_, solid_);
+  order_glassy();
+  add_in_order(clear_, glassy_);
 }
 
 }  // namespace limber

@@ -97,6 +97,9 @@ class DrawList {
   void paint(const Snapshot& now);
   void see(const Form& form, const Pose& pose, const DrawEye& eye);
   void measure();
+  void order_solid();
+  void order_glassy();
+  void add_in_order(std::vector<Batch>& batches, const std::vector<Seen>& seen);
   void put_together();
 
   std::shared_ptr<const Drawing> drawing_;
@@ -106,6 +109,7 @@ class DrawList {
   std::vector<Instance> paints_;  // by material: its colours alone
   std::map<const MeshModel*, std::shared_ptr<const MeshModel>> models_;
   std::vector<Seen> solid_, glassy_;
+  std::vector<std::uint32_t> first_, order_;  // scratch
   std::vector<glm::vec3> places_;
   std::vector<float> reaches_, numbers_;
   std::vector<Instance> instances_;

@@ -63,7 +63,8 @@ TEST(Bench, DrawsSmallAndLarge) {
   const Json figures = figures_of("picture", options);
   for (const char* size : {"small", "large"}) {
     EXPECT_GT(figures[size]["frames_a_second"], 0) << figures.dump();
-    EXPECT_LE(figures[size]["processor_us"]["min"], figures[size]["frame_us"]["p99"]);
+    EXPECT_EQ(figures[size]["frames"], 2);
+    EXPECT_GT(figures[size]["processor_us"]["min"], 0);
   }
   EXPECT_EQ(figures["small"]["parts"], 16 * 17);
   EXPECT_EQ(figures["large"]["parts"], 17000);
