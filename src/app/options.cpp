@@ -47,6 +47,7 @@ constexpr const char* kAbout =
     "  limber my.lua --fast --duration 10 --hash    ten simulated seconds, as fast as it can\n"
     "  limber console -e sim.time                   asks the one that plays, in Lua\n"
     "  limber monitor                               what it takes in and sends out\n"
+    "  limber export evening.take --format gltf     a recorded show's motion for other programs\n"
     "  limber new show my_show                      a folder to begin with\n";
 
 constexpr const char* kExitCodes =

@@ -131,7 +131,7 @@ class Maker {
     }
   }
 
-  // what comes and goes is of size 1 and 0
+  // what comes and goes is of size 1 and 0; where nothing is animated it is there
   void add_switches(const GltfTrack& track, int body) {
     std::vector<float>& times = out_.kept.emplace_back();
     std::vector<float>& sizes = out_.kept.emplace_back();
@@ -146,7 +146,6 @@ class Maker {
     model_.accessors.back().minValues = {times.front()};
     model_.accessors.back().maxValues = {times.back()};
     add_channel(body, "scale", input, add_numbers(bytes_of(sizes), TINYGLTF_TYPE_VEC3, times.size()), "STEP");
-    model_.nodes[static_cast<std::size_t>(body)].scale.assign(3, sizes.front());
   }
 
   int mesh_of(const MotionLink& link) {

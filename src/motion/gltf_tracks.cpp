@@ -2,16 +2,21 @@
 #include "motion/gltf_tracks.h"
 
 #include <algorithm>
+#include <cmath>
 
 namespace limber {
 
 namespace {
 
-// puts numbers at the end; whether they are those before
+// what the simulation's rounding does to a thing that stands: a micrometre, a microradian
+constexpr float kStill = 1e-6F;
+
+// puts numbers at the end; whether they are the first ones
 template <std::size_t N>
 bool add_key(std::vector<float>& keys, const std::array<double, N>& values) {
   for (const double value : values) keys.push_back(static_cast<float>(value));
-  return keys.size() <= N || std::equal(keys.end() - N, keys.end(), keys.end() - 2 * N);
+  return std::equal(keys.end() - N, keys.end(), keys.begin(),
+                    [](float a, float b) { return std::abs(a - b) <= kStill; });
 }
 
 template <std::size_t N>

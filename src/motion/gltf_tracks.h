@@ -13,7 +13,7 @@ namespace limber {
 struct GltfLinkKeys {
   std::vector<float> places;  ///< Three a key.
   std::vector<float> turns;   ///< Four a key, x y z w, never further than half a turn from the one before.
-  bool still = true;          ///< All keys are the same.
+  bool still = true;          ///< All keys are the same but for rounding.
 };
 
 struct GltfTrack {

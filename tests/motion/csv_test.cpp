@@ -65,7 +65,7 @@ TEST_F(CsvTest, WhoComesAndGoesHasEmptyCells) {
   ASSERT_EQ(said(writer->finish()), "");
   const Table table = read_table(text("a.csv"));
   ASSERT_EQ(table.size(), 5u);
-  for (const auto& row : table) EXPECT_EQ(row.size(), 22u);
+  for (const auto& row : table) ASSERT_EQ(row.size(), 22u);
   EXPECT_EQ(table[0][8], "b/part/ball/x");
   EXPECT_EQ(table[0][15], "c/part/ball/x");
   const std::vector<std::array<std::string, 4>> places = {
