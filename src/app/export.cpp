@@ -160,7 +160,9 @@ int tell_end(const Plan& plan, const ExportCommand& command, const Ended& end, c
 int export_take(const ExportCommand& command, const std::function<bool()>& cancel) {
   const Result<Plan> plan = plan_of(command);
   if (!plan) return fail(kUsage, plan.error());
-  if (command.to && *command.to < command.from) return fail(kUsage, "--to lies before --from");
+  if (command.to && *command.to < command.from)
+    return fail(kUsage, fmt::format("--to {} lies before --from {}; give a time behind it", number_text(*command.to),
+                                    number_text(command.from)));
   if (const Result<void> is_free = check_free(*plan, command.overwrite); !is_free) return fail(kInput, is_free.error());
   const Result<std::uint64_t> ticks = ticks_of(command.take);
   if (!ticks) return fail(kInput, ticks.error());
@@ -173,9 +175,12 @@ int export_take(const ExportCommand& command, const std::function<bool()>& cance
   MotionSource source(command.bodies);
   const Ended end = write_frames(command, *ticks, engine, moments, source, **writer);
   if (!end.written) return fail(kMachine, end.written.error());
-  if (end.cancelled) return fail(kInput, fmt::format("cancelled; there is no {}", printable(plan->output)));
+  if (end.cancelled) {
+    fmt::print(stderr, "limber: cancelled; there is no {}\n", printable(plan->output));
+    return kInput;
+  }
   if (end.frames == 0)
-    return fail(kInput, fmt::format("the take ends at {} s, before --from {}", number_text(moments.elapsed()),
+    return fail(kInput, fmt::format("the take ends at {:.2f} s, before --from {}; begin earlier", moments.elapsed(),
                                     number_text(command.from)));
   if (source.bodies() == 0 && !command.bodies.empty())
     return fail(kInput, fmt::format("no body of the take is called '{}'{}", printable(command.bodies.front()),
