@@ -18,6 +18,7 @@
 #include "app/describe_page.h"
 #include "app/doctor.h"
 #include "app/exit_code.h"
+#include "app/export.h"
 #include "app/inspect.h"
 #include "app/monitor.h"
 #include "app/new.h"
@@ -34,8 +35,9 @@ namespace limber {
 
 namespace {
 
-constexpr std::array<std::string_view, 12> kCommands = {"play",     "console",  "monitor", "send",   "new",  "inspect",
-                                                        "describe", "annotate", "bench",   "preset", "take", "doctor"};
+constexpr std::array<std::string_view, 13> kCommands = {"play",    "console",  "monitor",  "send",  "new",
+                                                        "inspect", "describe", "annotate", "bench", "preset",
+                                                        "take",    "export",   "doctor"};
 
 constexpr const char* kAbout =
     "Limber: a live simulator of actuated, articulated bodies, scripted in Lua, played over OSC.\n\n"
@@ -45,6 +47,7 @@ constexpr const char* kAbout =
     "  limber my.lua --fast --duration 10 --hash    ten simulated seconds, as fast as it can\n"
     "  limber console -e sim.time                   asks the one that plays, in Lua\n"
     "  limber monitor                               what it takes in and sends out\n"
+    "  limber export evening.take --format gltf     a recorded show's motion for other programs\n"
     "  limber new show my_show                      a folder to begin with\n";
 
 constexpr const char* kExitCodes =
@@ -164,6 +167,7 @@ struct CommandLine {
   NewCommand fresh;
   PresetCommand preset;
   TakeCommand take;
+  ExportCommand exported;
   bool json = false;
   bool markdown = false;
   std::vector<std::string> package_paths;
@@ -269,7 +273,50 @@ void add_take(CLI::App& app, TakeCommand& command) {
   info->add_option("file", command.file, "the take")->type_name("TAKE")->required();
   take->footer(
       "  limber my.lua --record evening.take\n"
-      "  limber --replay evening.take --fast");
+      "  limber --replay evening.take --fast\n"
+      "  limber export evening.take --format gltf");
+}
+
+// times and rates that are numbers of a range
+CLI::Validator number_between(double least, double most) {
+  return CLI::Validator(
+      [least, most](std::string& text) {
+        const std::optional<double> number = parse_number(text);
+        return number && *number >= least && *number <= most
+                   ? std::string()
+                   : fmt::format("'{}' is no number from {} to {}", text, number_text(least), number_text(most));
+      },
+      "", "number");
+}
+
+void add_export(CLI::App& app, ExportCommand& command) {
+  CLI::App* made = app.add_subcommand("export", "a take as motion for other programs: CSV, BVH, glTF");
+  made->footer(
+      "The take is replayed as fast as it goes, and looked at so many times a simulated second, between ticks too.\n"
+      "  csv   a table: a row a frame; where each part is, how it is turned, what each joint stands at\n"
+      "  bvh   a skeleton a body; Y up, metres; with -o NAME.bvh one body in one file, else a folder\n"
+      "  gltf  bodies with their meshes and one animation; Y up, metres; .glb, or .gltf beside a .bin\n"
+      "  limber export evening.take --format gltf                    evening.glb\n"
+      "  limber export evening.take -o arm1.bvh --body arm1 --rate 30\n"
+      "  limber export evening.take -o arms.csv --body 'arm*' --from 60 --to 90\n"
+      "What each format holds: docs/export.md.");
+  made->add_option("take", command.take, "the take")->type_name("TAKE")->required();
+  made->add_option("--format", command.format, "left out: what -o ends with")
+      ->type_name("csv|bvh|gltf")
+      ->check(CLI::IsMember({"csv", "bvh", "gltf"}));
+  made->add_option("-o,--output", command.output, "where it goes; left out: beside the take, under its name")
+      ->type_name("FILE");
+  made->add_option("--rate", command.rate, "frames a simulated second; default 60")
+      ->type_name("N")
+      ->check(number_between(0.01, 10000));
+  made->add_option("--body", command.bodies, "only this body, or those of a pattern; may be given several times")
+      ->type_name("PATTERN")
+      ->allow_extra_args(false);
+  made->add_option("--from", command.from, "begin there, in simulated seconds of the take")
+      ->type_name("S")
+      ->check(number_between(0, 1e9));
+  made->add_option("--to", command.to, "end there")->type_name("S")->check(number_between(0, 1e9));
+  made->add_flag("--overwrite", command.overwrite, "write over a file that is there");
 }
 
 // what was wrong, as CLI11 tells it; for an option that there is not, the near one
@@ -307,6 +354,7 @@ int run_command_line(int argc, char** argv) {
   add_new(app, line.fresh);
   add_preset(app, line.preset);
   add_take(app, line.take);
+  add_export(app, line.exported);
   CLI::App* annotate = app.add_subcommand("annotate", "definitions of all that scripts see, for editors (LuaCATS)");
   annotate->add_option("file", line.definitions, "where they go; left out: stdout")->type_name("FILE");
   app.add_subcommand("doctor", "what works on this machine: ports, buffers, data");
@@ -337,6 +385,7 @@ int run_command_line(int argc, char** argv) {
   if (command == "new") return new_command(line.fresh);
   if (command == "preset") return preset_command(line.preset);
   if (command == "take") return take_command(line.take);
+  if (command == "export") return export_command(line.exported);
   if (command == "annotate") return annotate_command(line.definitions);
   if (command == "bench") return bench_command(line.bench);
   if (command == "doctor") return doctor_command();

@@ -17,6 +17,7 @@
 #include "app/query_doors.h"
 #include "app/render.h"
 #include "app/scene_watch.h"
+#include "app/signals.h"
 #include "app/window_show.h"
 #include "base/build_info.h"
 #include "base/log.h"
@@ -103,17 +104,6 @@ Result<EngineOptions> parse_engine(const PlayOptions& options, const std::string
     engine.sets.push_back(std::move(*set));
   }
   return engine;
-}
-
-// the signals that end the show, and the one by which its thread calls the main one; they reach only who waits for them
-sigset_t block_signals() {
-  sigset_t set;
-  sigemptyset(&set);
-  for (const int signal : {SIGINT, SIGTERM, SIGHUP, SIGUSR1}) sigaddset(&set, signal);
-  pthread_sigmask(SIG_BLOCK, &set, nullptr);
-  std::signal(SIGPIPE, SIG_IGN);
-  std::signal(SIGXFSZ, SIG_IGN);  // a file that may not grow is told as a full disk is
-  return set;
 }
 
 enum class Heard : std::uint8_t { nothing, call, end };
@@ -324,10 +314,7 @@ int render_scene(const PlayOptions& options, EngineOptions engine_options, const
   const std::optional<double> duration = engine_options.duration;
   Engine engine(link, std::move(engine_options));
   if (const Result<void> started = engine.start(); !started) return fail(kInput, started.error());
-  const Rendered rendered = render(options.picture, engine, link, duration, [&] {
-    const timespec now = {0, 0};
-    return sigtimedwait(&signals, nullptr, &now) > 0;
-  });
+  const Rendered rendered = render(options.picture, engine, link, duration, [&] { return signal_came(signals); });
   return rendered.code != kFine ? rendered.code : finish(options, engine, rendered.cancelled);
 }
 

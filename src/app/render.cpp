@@ -8,92 +8,16 @@
 
 #include "app/exit_code.h"
 #include "app/film_file.h"
+#include "app/moments.h"
 #include "app/panel_setup.h"
 #include "app/paths.h"
-#include "base/clock_seconds.h"
+#include "app/progress.h"
 #include "base/text.h"
 #include "view/offscreen.h"
 
 namespace limber {
 
 namespace {
-
-constexpr double kSayEvery = 2;  // s
-constexpr int kMostIdle = 1000;
-
-// the two snapshots around a moment
-class Moments {
- public:
-  Moments(Engine& engine, EngineLink& link, const std::function<bool()>& cancel)
-      : engine_(engine), link_(link), cancel_(cancel) {
-    before_ = now_ = link.snapshots.read();
-  }
-
-  enum class Went : std::uint8_t { there, stuck, ended, cancelled };
-  /// Ticks until there. `stuck`: time stands still; `ended`: the take that is replayed goes no further.
-  Went go_to(double seconds) {
-    int idle = 0;  // ticks without time
-    while (elapsed_ < seconds - 1e-9) {
-      if (cancel_()) return Went::cancelled;
-      if (engine_.replays() && engine_.replay_over()) return Went::ended;
-      before_ = now_;
-      before_tick_();
-      engine_.tick();
-      link_.outbox.drain(gone_);
-      now_ = link_.snapshots.read();
-      // after a reset time begins anew; the film goes on
-      const double step = now_->time >= before_->time ? now_->time - before_->time : now_->time;
-      idle = step > 0 ? 0 : idle + 1;
-      const bool waits = now_->paused && !engine_.replays();
-      if (idle > 0 && (waits || idle > kMostIdle)) return Went::stuck;
-      elapsed_before_ = elapsed_;
-      elapsed_ += step;
-    }
-    return Went::there;
-  }
-  /// Called before each tick.
-  void on_tick(std::function<void()> f) { before_tick_ = std::move(f); }
-  const Snapshot& before() const { return *before_; }
-  const Snapshot& now() const { return *now_; }
-  double mix(double seconds) const {
-    const double step = elapsed_ - elapsed_before_;
-    return step <= 0 || elapsed_ - seconds < 1e-9 ? 1 : (seconds - elapsed_before_) / step;
-  }
-
- private:
-  Engine& engine_;
-  EngineLink& link_;
-  const std::function<bool()>& cancel_;
-  std::function<void()> before_tick_ = [] {};
-  std::shared_ptr<const Snapshot> before_, now_;
-  double elapsed_ = 0;
-  double elapsed_before_ = 0;
-  std::vector<Outgoing> gone_;  // nobody listens
-};
-
-std::string minutes(double seconds) {
-  const long s = std::lround(seconds);
-  return fmt::format("{}:{:02}", s / 60, s % 60);
-}
-
-// a line now and then
-class Progress {
- public:
-  explicit Progress(std::uint64_t frames) : frames_(frames) {}
-  void tell(std::uint64_t done) {
-    const double now = clock_seconds();
-    if (now - said_ < kSayEvery || done == 0) return;
-    said_ = now;
-    const double rate = static_cast<double>(done) / (now - begin_);
-    fmt::print(stderr, "limber: frame {} of {}, {:.1f} a second, {} left\n", done, frames_, rate,
-               minutes(static_cast<double>(frames_ - done) / rate));
-  }
-
- private:
-  std::uint64_t frames_;
-  double begin_ = clock_seconds();
-  double said_ = begin_;
-};
 
 Rendered failed(int code, const std::string& text) { return {fail(code, text), false}; }
 
@@ -158,7 +82,7 @@ Rendered draw_film(const PictureOptions& options, const PictureSize& size, Rende
   const auto frames = static_cast<std::uint64_t>(std::max(std::llround(duration * fps), 1LL));
   Result<std::unique_ptr<FilmFile>> film = FilmFile::open(options.render, size.width, size.height, fps);
   if (!film) return failed(kMachine, film.error());
-  Progress progress(frames);
+  Progress progress("frame", frames);
   std::uint64_t done = 0;
   bool cancelled = false;
   for (; done < frames; done++) {

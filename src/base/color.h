@@ -32,4 +32,7 @@ inline Vec3 rgb_of(const Vec3& hsb) {
   return {channel(0), channel(2.0 / 3), channel(1.0 / 3)};
 }
 
+/// A channel as screens show it (0 .. 1) as light, of which twice the number is twice as much.
+inline double light_of(double shown) { return std::pow(shown, 2.2); }
+
 }  // namespace limber

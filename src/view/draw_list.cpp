@@ -17,9 +17,6 @@ constexpr std::size_t kMeasured = 2000;
 float real(double v) { return static_cast<float>(v); }
 glm::vec3 real(const Vec3& v) { return {real(v.x), real(v.y), real(v.z)}; }
 
-// as screens show a number, to light
-double light_of(double shown) { return std::pow(shown, 2.2); }
-
 double reach_of(const ShapeModel& shape) {
   double far = 0;
   if (shape.mesh != nullptr) {

@@ -95,6 +95,9 @@ void write_inputs(const Folder& folder) {
               "end\n"
               "sim:on_step(function() warn('round and round') end)\n");
   folder.file("show/scripts/scene.lua", "");
+  folder.file("there.csv", "");
+  EXPECT_EQ(run({folder.path() + "/good.lua", "--fast", "--ticks", "6", "--record", folder.path() + "/six.take"}).code,
+            0);
   folder.file("broken.urdf", "<robot name='r'><link name='a'>");
 }
 

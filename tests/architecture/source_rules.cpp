@@ -30,7 +30,9 @@ constexpr std::array kRooms{
     Room{"query", "params model engine"},
     Room{"view", "params model engine"},
     Room{"gui", "params model engine"},
-    Room{"app", "params model sim behaviors script engine osc console query view gui"},
+    // files of motion: whoever fills them sees the rest
+    Room{"motion", ""},
+    Room{"app", "params model sim behaviors script engine osc console query view gui motion"},
 };
 
 /// An outside library, by how its headers begin, and the room that may include it ("" : every room).
@@ -58,6 +60,7 @@ constexpr std::array kLibraries{
     Library{"EGL/", "view"},
     Library{"stb_", "view"},
     Library{"imgui", "gui"},
+    Library{"tiny_gltf.h", "motion"},
     Library{"GLFW/", "app"},
     Library{"CLI/", "app"},
     Library{"histedit.h", "app"},

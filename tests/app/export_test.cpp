@@ -1,0 +1,331 @@
+// `limber export`: what other programs read of a take is where the engine that replays it has its bodies.
+#include "app/export.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <sstream>
+
+#include "app/program.h"
+#include "engine/engine.h"
+#include "motion/loaded.h"
+
+namespace limber::app_test {
+namespace {
+
+using motion_test::Loaded;
+using motion_test::turn_between;
+
+// an arm that swings, a drifting ball, one that comes after half a second and goes half a second later; 80 ticks
+constexpr const char* kShow = R"(
+local box = sim:add_box_shape("box", vec3(0.1, 0.1, 0.4))
+local ball = sim:add_sphere_shape("ball", 0.1)
+local arm = sim:add_body("my arm")
+local base = arm:add_part("base", box, { mass = 0, position = vec3(1, 2, 3), rotation = quat.axis(vec3(1, 0, 0), 0.5) })
+local swing = arm:add_part("swing", box, { position = vec3(1, 2.3, 3.2) })
+local tip = arm:add_part("tip", box, { position = vec3(1, 2.6, 3.4) })
+arm:add_joint("shoulder", base, swing, { position = vec3(1, 2.1, 3), axis = vec3(1, 0, 0) })
+arm:add_joint("wrist", swing, tip, { type = "spherical", position = vec3(1, 2.5, 3.3) })
+sim:add_body("ball"):add_part("ball", ball, { position = vec3(5, 0, 9) })
+sim:at(0.5, function() sim:add_body("guest"):add_part("ball", ball, { position = vec3(-4, 0, 2) }) end)
+sim:at(1.0, function() sim:body("guest"):remove() end)
+)";
+
+std::string record(const Folder& folder, const std::string& scene, const std::string& ticks,
+                   const std::string& name = "show") {
+  const std::string take = folder.path() + "/" + name + ".take";
+  const Ran ran = run({folder.file(name + ".lua", scene), "--fast", "--ticks", ticks, "--record", take});
+  EXPECT_EQ(ran.code, 0) << ran.err;
+  return take;
+}
+
+std::vector<std::string> names_in(const std::string& folder) {
+  std::vector<std::string> all;
+  for (const auto& entry : std::filesystem::directory_iterator(folder)) all.push_back(entry.path().filename());
+  std::sort(all.begin(), all.end());
+  return all;
+}
+
+// where the parts are after so many ticks of the replay
+std::map<std::string, Pose> poses_at(const std::string& take, std::uint64_t tick) {
+  EngineOptions options;
+  options.replay = take;
+  options.fast = true;
+  EngineLink link;
+  Engine engine(link, options);
+  const Result<void> started = engine.start();
+  EXPECT_TRUE(started) << started.error();
+  while (engine.world().tick() < tick && !engine.replay_over()) engine.tick();
+  std::map<std::string, Pose> poses;
+  for (const auto& body : engine.world().bodies()) {
+    for (const auto& part : body->parts()) poses[body->name() + "." + part->name()] = part->pose();
+  }
+  return poses;
+}
+
+// columns by name; an empty cell is no number
+std::map<std::string, std::vector<double>> table_of(const std::string& file) {
+  std::map<std::string, std::vector<double>> table;
+  std::istringstream in(content(file));
+  std::string line;
+  std::string cell;
+  std::getline(in, line);
+  std::vector<std::string> names;
+  for (std::istringstream head(line); std::getline(head, cell, ',');) names.push_back(cell);
+  while (std::getline(in, line)) {
+    std::istringstream row(line + ",");
+    for (const std::string& name : names) {
+      std::getline(row, cell, ',');
+      table[name].push_back(cell.empty() ? std::nan("") : std::stod(cell));
+    }
+  }
+  return table;
+}
+
+TEST(Export, EachFormatHasTheEnginesPoses) {
+  const Folder folder;
+  const std::string take = record(folder, kShow, "80");
+  for (const char* format : {"csv", "bvh", "gltf"}) {
+    const Ran ran = run({"export", take, "--format", format});
+    EXPECT_EQ(ran.code, 0) << ran.err;
+    EXPECT_NE(ran.err.find("81 frames of 3 bodies, 60 a second\n"), std::string::npos) << ran.err;
+    EXPECT_NE(ran.err.find("replayed 80 ticks: every hash is the take's\n"), std::string::npos) << ran.err;
+    EXPECT_EQ(ran.out, "");
+  }
+  EXPECT_EQ(names_in(folder.path()),
+            (std::vector<std::string>{"show.csv", "show.glb", "show.lua", "show.take", "show_bvh"}));
+  EXPECT_EQ(names_in(folder.path() + "/show_bvh"), (std::vector<std::string>{"ball.bvh", "guest.bvh", "my arm.bvh"}));
+  const Loaded gltf(folder.path() + "/show.glb");
+  const Loaded bvh(folder.path() + "/show_bvh/my arm.bvh");
+  const auto table = table_of(folder.path() + "/show.csv");
+  EXPECT_EQ(Loaded::count(gltf.scene().mRootNode), 1u + 3 + 5) << "scene, bodies, parts";
+  const std::vector<double>& guest = table.at("guest/part/ball/x");
+  const auto came = static_cast<unsigned>(
+      std::find_if(guest.begin(), guest.end(), [](double x) { return !std::isnan(x); }) - guest.begin());
+  EXPECT_EQ(came, 31u) << "in the first tick after half a second";
+  for (const unsigned tick : {0u, 41u, 80u}) {
+    for (const auto& [name, pose] : poses_at(take, tick)) {
+      const std::string body = name.substr(0, name.find('.'));
+      const std::string part = name.substr(name.find('.') + 1);
+      const unsigned first = body == "guest" ? came : 0;  // its keys begin there
+      const Pose in_gltf = gltf.z_up(name, tick - first);
+      EXPECT_LT(glm::length(in_gltf.position - pose.position), 1e-4) << name << tick;
+      EXPECT_LT(turn_between(in_gltf.rotation, pose.rotation), 2e-3) << name << tick;
+      const auto column = [&](const char* value) {
+        return table.at((body == "my arm" ? "my%20arm" : body) + "/part/" + part + "/" + value)[tick];
+      };
+      EXPECT_LT(glm::length(Vec3(column("x"), column("y"), column("z")) - pose.position), 1e-4) << name << tick;
+      EXPECT_LT(turn_between(quat_xyzw(column("qx"), column("qy"), column("qz"), column("qw")), pose.rotation), 1e-3);
+      if (body == "my arm") {
+        EXPECT_LT(glm::length(bvh.z_up(part, tick).position - pose.position), 1e-4) << name << tick;
+      }
+    }
+  }
+  EXPECT_EQ(gltf.channel("my arm.base"), nullptr) << "what stands still has no keys";
+  ASSERT_NE(gltf.channel("my arm.swing"), nullptr);
+  EXPECT_EQ(gltf.channel("my arm.swing")->mNumRotationKeys, 81u);
+  EXPECT_EQ(gltf.channel("guest.ball")->mNumPositionKeys, 30u);
+  EXPECT_EQ(gltf.channel("guest")->mNumScalingKeys, 3u) << "not yet, there, gone";
+}
+
+TEST(Export, JointsTellTheirAngles) {
+  const Folder folder;
+  const std::string take = record(folder, kShow, "80");
+  ASSERT_EQ(run({"export", take, "--format", "csv"}).code, 0);
+  auto table = table_of(folder.path() + "/show.csv");
+  const auto rotation = [&](const std::string& part, std::size_t i) {
+    const auto at = [&](const char* value) { return table.at("my%20arm/part/" + part + "/" + value)[i]; };
+    return quat_xyzw(at("qx"), at("qy"), at("qz"), at("qw"));
+  };
+  double most = 0;
+  for (const std::size_t i : {10u, 40u, 80u}) {
+    const double angle = table.at("my%20arm/joint/shoulder/angle")[i];
+    most = std::max(most, std::abs(angle));
+    EXPECT_LT(turn_between(rotation("base", i) * quat_axis({1, 0, 0}, angle) * glm::conjugate(rotation("base", 0)),
+                           rotation("swing", i) * glm::conjugate(rotation("swing", 0))),
+              5e-3);
+  }
+  EXPECT_GT(most, 0.3) << "it swings";
+  for (const char* value : {"angle_x", "angle_y", "angle_z"})
+    EXPECT_EQ(table.count(std::string("my%20arm/joint/wrist/") + value), 1u) << value;
+}
+
+TEST(Export, FramesLieBetweenTicksToo) {
+  const Folder folder;
+  const std::string take = record(folder, R"(
+sim.gravity = vec3(0, 0, 0)
+local ball = sim:add_body("ball"):add_part("p", sim:add_sphere_shape("ball", 0.1))
+ball.linear_velocity = vec3(1.5, 0, 0)
+ball.angular_velocity = vec3(0, 0, 2)
+)",
+                                  "60");
+  for (const auto& [rate, frames] : {std::pair("37", 38u), {"24", 25u}, {"1000", 1001u}, {"0.5", 1u}}) {
+    const std::string file = folder.path() + "/" + rate + ".csv";
+    ASSERT_EQ(run({"export", take, "-o", file, "--rate", rate}).code, 0);
+    const auto table = table_of(file);
+    ASSERT_EQ(table.at("time").size(), frames) << rate;
+    for (std::size_t i = 0; i < frames; i++) {
+      const double time = static_cast<double>(i) / std::stod(rate);
+      EXPECT_NEAR(table.at("time")[i], time, 1e-9);
+      EXPECT_NEAR(table.at("ball/part/p/x")[i], 1.5 * time, 2e-5) << rate << " " << i;
+      EXPECT_NEAR(table.at("ball/part/p/qz")[i], std::sin(time), 2e-5) << "half the angle; " << rate << " " << i;
+      EXPECT_NEAR(table.at("ball/part/p/qw")[i], std::cos(time), 2e-5) << rate << " " << i;
+    }
+  }
+  const std::string part = folder.path() + "/part.csv";
+  ASSERT_EQ(run({"export", take, "-o", part, "--rate", "10", "--from", "0.25", "--to", "0.75"}).code, 0);
+  const auto table = table_of(part);
+  ASSERT_EQ(table.at("time").size(), 6u);
+  EXPECT_NEAR(table.at("time").front(), 0.25, 1e-9);
+  EXPECT_NEAR(table.at("ball/part/p/x").back(), 1.5 * 0.75, 2e-5);
+}
+
+// time begins anew in the show, and goes on in the file; the bodies are the same
+TEST(Export, AResetGoesOn) {
+  const Folder folder;
+  const std::string take = folder.path() + "/show.take";
+  {
+    EngineOptions options;
+    options.scene = folder.file("show.lua", R"(
+sim.gravity = vec3(0, 0, 0)
+sim:add_body("ball"):add_part("p", sim:add_sphere_shape("ball", 0.1)).linear_velocity = vec3(1, 0, 0)
+)");
+    options.record = take;
+    options.fast = true;
+    EngineLink link;
+    Engine engine(link, options);
+    ASSERT_TRUE(engine.start());
+    for (int i = 0; i < 30; i++) engine.tick();
+    link.inbox.push({{Message{"/transport/reset", {}}}, {Hand::osc, 0x7f000001, 4000}});
+    for (int i = 0; i < 20; i++) engine.tick();
+    engine.end_take();
+  }
+  const Ran ran = run({"export", take, "--format", "csv", "--rate", "40"});
+  EXPECT_EQ(ran.code, 0) << ran.err;
+  const auto table = table_of(folder.path() + "/show.csv");
+  EXPECT_EQ(table.size(), 8u) << "one body";
+  const std::vector<double>& x = table.at("ball/part/p/x");
+  double most = 0;
+  for (std::size_t i = 0; i < x.size(); i++) {
+    EXPECT_NEAR(table.at("time")[i], static_cast<double>(i) / 40, 1e-9);
+    most = std::max(most, x[i]);
+    if (i == 0) continue;
+    const bool goes_on = std::abs(x[i] - x[i - 1] - 1.0 / 40) < 1e-4;
+    EXPECT_TRUE(goes_on || x[i] < 0.026) << "nothing lies between the end and the beginning: " << x[i];
+  }
+  EXPECT_NEAR(most, 0.5, 0.03);
+}
+
+TEST(Export, BodiesAreChosen) {
+  const Folder folder;
+  const std::string take = record(folder, kShow, "40");
+  const std::string one = folder.path() + "/one.bvh";
+  EXPECT_EQ(run({"export", take, "-o", one, "--body", "my arm"}).code, 0);
+  EXPECT_EQ(Loaded(one).scene().mRootNode->FindNode("tip") != nullptr, true);
+  const std::string two = folder.path() + "/two.csv";
+  EXPECT_EQ(run({"export", take, "-o", two, "--body", "b*", "--body", "guest"}).code, 0);
+  EXPECT_EQ(table_of(two).size(), 15u);
+  const Ran none = run({"export", take, "-o", folder.path() + "/none.csv", "--body", "bal"});
+  EXPECT_EQ(none.code, 1);
+  EXPECT_NE(none.err.find("no body of the take is called 'bal'; did you mean 'ball'?"), std::string::npos) << none.err;
+  const Ran many = run({"export", take, "-o", folder.path() + "/many.bvh"});
+  EXPECT_NE(many.err.find("choose one by --body"), std::string::npos) << many.err;
+  EXPECT_NE(many.code, 0);
+  EXPECT_EQ(names_in(folder.path()), (std::vector<std::string>{"one.bvh", "show.lua", "show.take", "two.csv"}));
+}
+
+TEST(Export, NothingIsWrittenOverUnasked) {
+  const Folder folder;
+  const std::string take = record(folder, kShow, "5");
+  const std::string bin = folder.file("a.bin", "mine");
+  const std::string csv = folder.file("a.csv", "mine");
+  folder.file("a_bvh/note", "mine");
+  for (const auto& [output, said] : {std::pair("a.csv", "write over it by --overwrite"),
+                                     {"a.gltf", "a.bin is there already"},
+                                     {"a_bvh", "none is written over"}}) {
+    const Ran ran =
+        run({"export", take, "--format", std::string(output).substr(2), "-o", folder.path() + "/" + output});
+    EXPECT_EQ(ran.code, 1) << ran.err;
+    EXPECT_NE(ran.err.find(said), std::string::npos) << ran.err;
+  }
+  EXPECT_EQ(content(bin) + content(csv) + content(folder.path() + "/a_bvh/note"), "mineminemine");
+  EXPECT_EQ(run({"export", take, "-o", csv, "--overwrite"}).code, 0);
+  EXPECT_TRUE(content(csv).starts_with("time,"));
+}
+
+TEST(Export, CancelledItLeavesNothing) {
+  const Folder folder;
+  ExportCommand command;
+  command.take = record(folder, kShow, "40");
+  for (const char* name : {"a.csv", "a.glb", "a.gltf", "a_bvh"}) {
+    command.output = folder.path() + "/" + name;
+    command.format = std::string(name) == "a_bvh" ? "bvh" : "";
+    int asked = 0;
+    EXPECT_EQ(export_take(command, [&] { return ++asked > 20; }), 1);
+    EXPECT_EQ(asked, 21);
+    EXPECT_EQ(names_in(folder.path()), (std::vector<std::string>{"show.lua", "show.take"})) << name;
+  }
+}
+
+TEST(Export, AFullDiskIsTheMachinesFault) {
+  const Folder folder;
+  const std::string take = record(folder, kShow, "80");
+  const std::string command =
+      fmt::format("ulimit -f 8; exec {} export {} --format csv --rate 1000", LIMBER_PROGRAM, take);
+  const Ran ran = Running({"/bin/sh", "-c", command}).finish();
+  EXPECT_EQ(ran.code, 3) << ran.err;
+  EXPECT_NE(ran.err.find("show.csv can't be written: File too large"), std::string::npos) << ran.err;
+  EXPECT_EQ(names_in(folder.path()), (std::vector<std::string>{"show.lua", "show.take"}));
+}
+
+TEST(Export, ATakeThatWasCutOffGoesToItsLastTick) {
+  const Folder folder;
+  const std::string take = record(folder, kShow, "80");
+  const std::string cut = folder.file("cut.take", content(take).substr(0, content(take).size() - 200));
+  const Ran ran = run({"export", cut, "--format", "csv"});
+  EXPECT_EQ(ran.code, 0) << ran.err;
+  EXPECT_NE(ran.err.find("the take was cut off there"), std::string::npos) << ran.err;
+  const std::size_t frames = table_of(folder.path() + "/cut.csv").at("time").size();
+  EXPECT_GT(frames, 10u);
+  EXPECT_LT(frames, 81u);
+  EXPECT_NE(ran.err.find(fmt::format("replayed {} ticks", frames - 1)), std::string::npos) << ran.err;
+}
+
+TEST(Export, AnEmptySceneIsAnEmptyFile) {
+  const Folder folder;
+  const std::string take = record(folder, "", "3");
+  EXPECT_EQ(run({"export", take, "--format", "csv", "--rate", "20"}).code, 0);
+  EXPECT_EQ(content(folder.path() + "/show.csv"), "time\n0\n0.05\n");
+  EXPECT_EQ(run({"export", take, "--format", "gltf"}).code, 0);
+  const Ran bvh = run({"export", take, "--format", "bvh"});
+  EXPECT_NE(bvh.code, 0);
+  EXPECT_NE(bvh.err.find("there is no body to write"), std::string::npos) << bvh.err;
+}
+
+TEST(Export, WrongUsageNamesTheCure) {
+  const Folder folder;
+  const std::string take = record(folder, kShow, "5");
+  struct Case {
+    std::vector<std::string> args;
+    int code;
+    const char* said;
+  };
+  const Case cases[] = {
+      {{"/nowhere.take", "--format", "csv"}, 1, "/nowhere.take"},
+      {{folder.path() + "/show.lua", "--format", "csv"}, 1, "show.lua"},
+      {{take, "-o", "/nowhere/a.csv"}, 1, "/nowhere/a.csv can't be written"},
+  };
+  for (const Case& c : cases) {
+    std::vector<std::string> args = {"export"};
+    args.insert(args.end(), c.args.begin(), c.args.end());
+    const Ran ran = run(args);
+    EXPECT_EQ(ran.code, c.code) << ran.err;
+    EXPECT_NE(ran.err.find(c.said), std::string::npos) << ran.err;
+  }
+  const std::string help = run({"export", "--help"}).out;
+  for (const char* taught : {"--rate", "--body", "--from", "--overwrite", "Y up", "docs/export.md", "evening.glb"})
+    EXPECT_NE(help.find(taught), std::string::npos) << taught;
+}
+
+}  // namespace
+}  // namespace limber::app_test
