@@ -11,8 +11,8 @@ namespace limber {
 
 class Ending {
  public:
-  /// The signals are blocked in every thread. `hurried`, `late`: end the program. [main]
-  Ending(const sigset_t& signals, std::function<void()> hurried, std::function<void()> late);
+  /// The signals are blocked in every thread. `late` ends the program. [main]
+  Ending(const sigset_t& signals, std::function<void()> late);
   ~Ending();
   Ending(const Ending&) = delete;
   Ending& operator=(const Ending&) = delete;
@@ -24,7 +24,7 @@ class Ending {
   void watch();
 
   sigset_t signals_;
-  std::function<void()> hurried_, late_;
+  std::function<void()> late_;
   std::atomic<bool> whole_{false};
   std::atomic<bool> done_{false};
   std::thread thread_;

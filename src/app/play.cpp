@@ -288,13 +288,11 @@ int play_scene(const PlayOptions& options, EngineOptions engine_options, const O
   if ((!options.fast || options.watch) && options.replay.empty()) scene_watch.emplace(link, engine, scene_file);
   QueryServer query(link, query_doors(network, osc.allow));
   const auto close = [&](bool ended) {
-    Ending ending(
-        signals, [] { leave("ended before all files were written"); },
-        [&] {
-          const int code = finish(options, engine, ended);
-          std::fflush(nullptr);
-          std::_Exit(code);
-        });
+    Ending ending(signals, [&] {
+      const int code = finish(options, engine, ended);
+      std::fflush(nullptr);
+      std::_Exit(code);
+    });
     engine.finish_saving();
     engine.end_recovery();
     ending.files_are_whole();
