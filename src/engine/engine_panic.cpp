@@ -18,8 +18,8 @@ void Engine::press_panic() {
   stage_->dispatch.let_go();
   panic.begin();
   log_warning(
-      "panic: behaviours, forces and the scene's callbacks stop, motors are {}; /transport/panic again brings the "
-      "newest good moment back, /transport/reset the start",
+      "panic: behaviours, forces and the scene's callbacks stop, motors are {}; /transport/panic again ends it, "
+      "/transport/reset begins anew",
       panic.holds_motors() ? "held" : "limp");
 }
 

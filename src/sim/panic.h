@@ -21,9 +21,7 @@ class Panic {
   static constexpr double kSink = 0.1;
 
   static constexpr const char* kDoc =
-      "All comes to rest: behaviours, morphs, forces and the scene's callbacks stop. Once more: back to the newest "
-      "good "
-      "moment.";
+      "All comes to rest: behaviours, morphs, forces and the scene's callbacks stop. Once more ends it.";
 
   explicit Panic(World& world) : world_(world) {}
 
