@@ -460,12 +460,14 @@ function shape_:add_child(child, position, rotation) end
 ---@field timestep number # s, 1e-05 .. 1, default 0.0166667. What a tick advances the time by.
 ---@field substeps integer # 1 .. 1000, default 4. Equal internal steps that a tick is made of.
 ---@field solver_iterations integer # 1 .. 10000, default 50. Rounds of the contact and joint solver in each internal step.
+---@field panic_motors "held"|"limp" # default held. What motors do while a panic holds: stay where they are, with their own strength, or nothing.
 ---@field solver "iterative" # default iterative. How joints and contacts are solved.
 ---@field seed integer # 0 .. 9007199254740992. What every random draw derives from: a behaviour's at once, a scene's from the next start.
 ---@field paused boolean # Time stands still; commands and OSC are still answered.
 ---@field speed number # × real time, 0.01 .. 100. How fast simulated time runs when it is paced.
 ---@field time number # read-only, s. Simulated time.
 ---@field tick integer # read-only. Ticks since the start.
+---@field panicked boolean # read-only. A panic holds: everything comes to rest.
 sim = {}
 
 ---A body from a URDF file.
@@ -597,6 +599,9 @@ function sim:at(time, f) end
 
 ---The scene from its start, with the performer's values.
 function sim:reset() end
+
+---All comes to rest: behaviours, morphs, forces and the scene's callbacks stop. Once more ends it.
+function sim:panic() end
 
 ---Text that is the same when the world is the same to the bit.
 ---@return string

@@ -4,7 +4,6 @@
 #include <sys/stat.h>
 
 #include <cstdio>
-#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
@@ -12,6 +11,7 @@
 #include <fcntl.h>
 #include <unistd.h>
 
+#include "app/paths.h"
 #include "base/descriptor.h"
 #include "base/text.h"
 
@@ -40,10 +40,8 @@ bool write_all(int fd, std::string_view text) {
 }  // namespace
 
 std::string ConsoleHistory::default_file() {
-  const char* state = std::getenv("XDG_STATE_HOME");
-  if (state != nullptr && state[0] == '/') return std::string(state) + "/limber/console_history";
-  const char* home = std::getenv("HOME");
-  return home != nullptr && home[0] == '/' ? std::string(home) + "/.local/state/limber/console_history" : "";
+  const std::string folder = state_dir();
+  return folder.empty() ? "" : folder + "/console_history";
 }
 
 ConsoleHistory::ConsoleHistory(std::string file) : file_(std::move(file)) {

@@ -82,7 +82,8 @@ CLI::App* add_play(CLI::App& app, PlayOptions& o) {
   CLI::Option* scene =
       play->add_option("scene", o.scene, "the scene's file; left out: scripts/arms.lua")->type_name("SCENE.lua");
   add_picture_options(*play, o.picture);
-  play->add_flag("--fast", o.fast, "as fast as it can instead of in real time; no OSC, no OSCQuery unless asked for");
+  CLI::Option* fast = play->add_flag("--fast", o.fast,
+                                     "as fast as it can instead of in real time; no OSC, no OSCQuery unless asked for");
   play->add_option("--duration,--seconds", o.duration, "end at that simulated time")
       ->type_name("S")
       ->check(positive_time());
@@ -126,6 +127,11 @@ CLI::App* add_play(CLI::App& app, PlayOptions& o) {
           ->excludes(seed)
           ->excludes(sets)
           ->excludes(preset);
+  play->add_flag(
+          "--recover", o.recover,
+          "begin with the values that the scene had when its last run crashed; a start tells when there are some")
+      ->excludes(replay)
+      ->excludes(fast);
   play->add_flag("--with-current-scripts", o.current_scripts,
                  "with --replay, the scene as it is on the disk now; tells where the runs part")
       ->needs(replay);

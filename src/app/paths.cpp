@@ -1,6 +1,7 @@
 // Finding the program's data.
 #include "app/paths.h"
 
+#include <cstdlib>
 #include <filesystem>
 
 #include <fmt/format.h>
@@ -32,6 +33,13 @@ std::string shader_dir() {
   std::error_code fault;
   if (data.empty() || !fs::is_regular_file(fs::path(data) / "shaders/common.glsl", fault)) return {};
   return (fs::path(data) / "shaders").string();
+}
+
+std::string state_dir() {
+  const char* state = std::getenv("XDG_STATE_HOME");
+  if (state != nullptr && state[0] == '/') return std::string(state) + "/limber";
+  const char* home = std::getenv("HOME");
+  return home != nullptr && home[0] == '/' ? std::string(home) + "/.local/state/limber" : "";
 }
 
 std::string find_scene(std::string_view name, std::vector<std::string>& looked) {

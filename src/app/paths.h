@@ -14,6 +14,10 @@ std::string data_dir();
 /// The folder of shaders/ among that data, which may be edited while it plays; empty when there is none. [any]
 std::string shader_dir();
 
+/// Where this user's programs keep what they remember of themselves, without / at the end: $XDG_STATE_HOME/limber, else
+/// below ~/.local/state; empty when there is no home. [any]
+std::string state_dir();
+
 /// The file as given, else in the data folder; empty when neither is there. `looked` gets every place. [any]
 std::string find_scene(std::string_view name, std::vector<std::string>& looked);
 

@@ -12,6 +12,7 @@
 
 #include <fmt/format.h>
 
+#include "app/ending.h"
 #include "app/exit_code.h"
 #include "app/paths.h"
 #include "app/query_doors.h"
@@ -98,6 +99,11 @@ Result<EngineOptions> parse_engine(const PlayOptions& options, const std::string
   engine.record = options.record;
   engine.replay = options.replay;
   engine.current_scripts = options.current_scripts;
+  // batches, replays and films leave nothing that a performer would miss
+  const std::string state = state_dir();
+  if (!options.fast && options.replay.empty() && !options.picture.offline() && !state.empty())
+    engine.recovery = state + "/recovery";
+  engine.recover = options.recover;
   for (const std::string& text : options.sets) {
     Result<Message> set = parse_set(text);
     if (!set) return Error{set.error()};
@@ -108,9 +114,9 @@ Result<EngineOptions> parse_engine(const PlayOptions& options, const std::string
 
 enum class Heard : std::uint8_t { nothing, call, end };
 
-// waits for a signal, so many seconds
-Heard listen(const sigset_t& signals, int seconds = 1) {
-  const timespec time = {seconds, 0};
+// waits for a signal, so many milliseconds
+Heard listen(const sigset_t& signals, long ms = 1000) {
+  const timespec time = {ms / 1000, ms % 1000 * 1000000};
   const int signal = sigtimedwait(&signals, nullptr, &time);
   return signal < 0 ? Heard::nothing : signal == SIGUSR1 ? Heard::call : Heard::end;
 }
@@ -188,12 +194,13 @@ bool watch(const Show& show, Engine& engine, const EngineLink& link, const sigse
     const WindowShow::End end = window != nullptr ? window->frame() : WindowShow::End::none;
     if (end == WindowShow::End::lost) window = nullptr;
     const bool closed = end == WindowShow::End::closed;
-    const Heard heard = listen(signals, window != nullptr ? 0 : 1);
+    const Heard heard = listen(signals, window != nullptr ? 0 : 1000);
     if (heard == Heard::nothing && window == nullptr) print_status(link);
     if (heard != Heard::end && !closed) continue;
     engine.stop();
-    for (int i = 0; i < 3 && !show.over(); i++) {
-      if (listen(signals) == Heard::end) break;
+    // somebody waits: a second, or until the second signal; between them comes the call that it is over
+    for (int i = 0; i < 2 && !show.over(); i++) {
+      if (listen(signals, 450) == Heard::end) break;
     }
     if (!show.over())
       leave("ended in the middle of a tick that takes seconds: fewer substeps or solver_iterations would help");
@@ -271,12 +278,23 @@ int play_scene(const PlayOptions& options, EngineOptions engine_options, const O
   if ((!options.fast || options.watch) && options.replay.empty()) scene_watch.emplace(link, engine, scene_file);
   QueryServer query(link, query_doors(network, osc.allow));
   const auto close = [&](bool ended) {
-    scene_watch.reset();
+    Ending ending(signals, [&] {
+      const int code = finish(options, engine, ended);
+      std::fflush(nullptr);
+      std::_Exit(code);
+    });
     engine.finish_saving();
+    engine.end_recovery();
+    ending.files_are_whole();
+    scene_watch.reset();
     query.stop();
     network.stop();
     console.stop();
     return finish(options, engine, ended);
+  };
+  const auto give_up = [&](int code, const std::string& why) {
+    engine.end_recovery();
+    return fail(code, why);
   };
   bool interrupted = false;
   {
@@ -284,12 +302,12 @@ int play_scene(const PlayOptions& options, EngineOptions engine_options, const O
     while (!show.started()) {
       if (listen(signals) == Heard::end) leave("ended while the scene was being read");
     }
-    if (!show.result() && !may_open_window(options)) return fail(kInput, show.result().error());
+    if (!show.result() && !may_open_window(options)) return give_up(kInput, show.result().error());
     if (const Result<void> open = open_ports(link, osc, query_wish, network, query); !open)
-      return fail(kMachine, open.error());
+      return give_up(kMachine, open.error());
     if (!options.fast) open_console(console);
     const std::unique_ptr<WindowShow> window = open_window(options, link);
-    if (!show.result() && window == nullptr) return fail(kInput, show.result().error());
+    if (!show.result() && window == nullptr) return give_up(kInput, show.result().error());
     show.go(window != nullptr);
     if (scene_watch) scene_watch->start();
     if (!show.result()) log_error("{}\nthe stage is empty and waits for the mended file", show.result().error());
@@ -326,6 +344,8 @@ int play_command(const PlayOptions& options) {
   fmt::print(stderr, "limber {} ({}): {}\n", version(), commit(), printable(replays ? options.replay : options.scene));
   if (Result<void> picture = check_picture(options.picture, options.duration); !picture)
     return fail(kUsage, picture.error());
+  if (options.recover && options.picture.offline())
+    return fail(kUsage, "--recover is for a show that plays; leave out --render and --screenshot");
   Result<OscOptions> osc = parse_osc(options);
   if (!osc) return fail(kUsage, osc.error());
   Result<QueryWish> query = parse_query(options.query);

@@ -44,6 +44,8 @@ class Dispatch {
   }
   /// What hands hold in the picture pulls; before each step.
   void pull_grips() { grips_.pull(world_); }
+  /// They let go of everything.
+  void let_go() { grips_.clear(); }
   /// What the last message set.
   struct Write {
     Place place;

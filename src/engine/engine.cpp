@@ -49,6 +49,7 @@ Engine::~Engine() {
 
 Result<void> Engine::start() {
   if (!options_.replay.empty()) return start_replay();
+  open_recovery();
   if (!options_.record.empty()) {
     if (Result<void> recorded = start_record(); !recorded) return recorded;
   }
@@ -56,6 +57,7 @@ Result<void> Engine::start() {
   Result<void> started = start_show();
   if (started) take_tick(false, true);
   if (!started) drop_take();
+  if (recovery_ != nullptr) recovery_->begin();
   return started;
 }
 
@@ -242,8 +244,9 @@ void Engine::pass(bool may_step) {
   const bool running = may_step && (!stage.transport.paused() || stage.transport.take_step());
   if (running) presets_.advance(stage.world);
   call_handlers();
-  if (running && stage.scene != nullptr) stage.scene->tick(stage.world.timestep());
+  if (running && stage.scene != nullptr && !stage.world.panic().on()) stage.scene->tick(stage.world.timestep());
   carry_out_wishes();
+  if (stage.world.take_panic_request()) press_panic();
   edits_.end(stage.store);
   notes_.tell(stage.store);
   times_.scripts = watch.lap();
@@ -274,6 +277,7 @@ void Engine::pass(bool may_step) {
   if (was_paused_ != stage_->transport.paused()) send_transport();
   times_.snapshot = watch.lap();
   presets_.prepare(stage_->world);
+  if (recovery_ != nullptr && recovery_->asks()) give_recovery();
   if (stage_->scene != nullptr) stage_->scene->collect_garbage();
   times_.collector = watch.lap();
 }

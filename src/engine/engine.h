@@ -17,6 +17,7 @@
 #include "engine/image_maker.h"
 #include "engine/link.h"
 #include "engine/presets.h"
+#include "engine/recovery_keeper.h"
 #include "engine/reload.h"
 #include "engine/requests.h"
 #include "engine/stage.h"
@@ -38,7 +39,10 @@ struct EngineOptions {
   std::string record;                  ///< A take goes there, from the start on.
   std::string replay;                  ///< This take is played; it has the scene and all that came in.
   bool current_scripts = false;        ///< A replay reads the scene from the disk, as it is now.
-  std::vector<Message> sets;           ///< `--set`: the performer's hand before the first tick, after the preset.
+  std::string recovery;                ///< The show's values are kept in that folder as long as it plays; empty: not.
+  std::chrono::milliseconds recovery_every = RecoveryKeeper::kEvery;
+  bool recover = false;       ///< `--recover`: what a run that did not end well has left is brought back.
+  std::vector<Message> sets;  ///< `--set`: the performer's hand before the first tick, after the preset.
 };
 
 class Engine : private ScriptHost {
@@ -83,6 +87,8 @@ class Engine : private ScriptHost {
   const Presets& presets() const { return presets_; }
   /// Waits until what presets have to write is on the disk. [any but sim]
   void finish_saving();
+  /// The show has ended well: nothing needs to be brought back. [any but sim, after run()]
+  void end_recovery();
   /// Ends the take that is recorded, if one is. [sim]
   void end_take();
   /// Whether a take is replayed, and what came of it so far.
@@ -101,6 +107,7 @@ class Engine : private ScriptHost {
   void send_direct(const Origin& to, Message message) override;
   void plan_osc(const OscPlan& plan) override;
   void ask_reset() override;
+  void ask_panic() override;
   Result<void> check_preset(const Message& wish, std::span<const Message> before) override;
   void ask_preset(Message&& wish) override;
   std::vector<std::string> preset_names() override;
@@ -110,6 +117,7 @@ class Engine : private ScriptHost {
   /// A tick; or, when `may_step` is false, only what happens while time stands still.
   void pass(bool may_step);
   bool reset();
+  void press_panic();
   Result<void> start_show();
   void keep_state(Stage& fresh, std::string_view name) const;
   /// The stage becomes the show; the answer is the one before.
@@ -117,6 +125,9 @@ class Engine : private ScriptHost {
   void replay_hand();
   Presets::Book read_presets(const std::string& scene);
   Result<void> first_hand();
+  void open_recovery();
+  Result<void> bring_back();
+  void give_recovery();
   void carry_out_wishes();
   Reload::End take(Draft& draft);
   Reload::End run_now(TakeRun::Kind kind, bool again);
@@ -181,8 +192,13 @@ class Engine : private ScriptHost {
   std::vector<std::unique_ptr<TakeWriter>> written_;  // takes that have ended, and may still be written
   std::optional<std::string> take_wanted_;            // the file of a take that begins at the tick's end
   bool take_ends_ = false;
-  bool answers_taken_ = false;         // what is sent now answers a message of the take that is replayed
-  std::optional<DraftOrder> ordered_;  // of the take that is replayed
+  bool answers_taken_ = false;                // what is sent now answers a message of the take that is replayed
+  std::optional<DraftOrder> ordered_;         // of the take that is replayed
+  std::unique_ptr<RecoveryKeeper> recovery_;  // null: values are not kept
+  std::shared_ptr<const Preset> recovered_;   // what the show begins with
+  std::string recovered_when_;                // empty: of a take
+  std::uint64_t given_version_ = 0;           // of the store, when values were given last
+  std::string given_scene_;                   // the scene then
   Clock clock_;
   PhaseTimes times_;
 

@@ -19,6 +19,7 @@ Presets::Book Engine::read_presets(const std::string& scene) {
 
 // what the command line has said
 Result<void> Engine::first_hand() {
+  if (Result<void> back = bring_back(); !back) return back;
   if (!options_.preset.empty()) {
     const Outcome outcome = stage_->dispatch.execute({"/preset/recall", {Arg::of(options_.preset)}});
     if (outcome.kind != Outcome::Kind::applied) return Error{fmt::format("--preset: {}", outcome.error)};

@@ -67,6 +67,7 @@ TakeBegin Engine::take_begin(bool reset) const {
   begin.package_paths = options_.scene_options.package_paths;
   begin.preset = options_.preset;
   begin.sets = options_.sets;
+  if (recovered_ != nullptr && !reset) begin.recovered = {recovered_};
   if (!reset) return begin;
   begin.world_seed = stage_->world.seed();
   begin.scene_seed = scene_seed_;
@@ -188,6 +189,7 @@ Result<void> Engine::start_replay() {
   options_.scene_options.package_paths = begin.package_paths;
   options_.preset = begin.preset;
   options_.sets = begin.sets;
+  if (!begin.recovered.empty()) recovered_ = begin.recovered.front();
   const bool exact = !player_->current_scripts();
   if (exact) options_.scene_options.limits = no_limits();
   player_->next();

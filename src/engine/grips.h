@@ -18,6 +18,7 @@ class Grips {
   /// `point` in the part's frame, `target` in the world. One that is held already is led on. False: too many.
   bool hold(World& world, NodeId part, const Vec3& point, const Vec3& target);
   void let_go(NodeId part);
+  void clear() { grips_.clear(); }
   /// The forces of this tick; before the step.
   void pull(World& world);
   std::size_t size() const { return grips_.size(); }

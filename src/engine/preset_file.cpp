@@ -1,7 +1,6 @@
 // Reading whole, writing beside, renaming.
 #include "engine/preset_file.h"
 
-#include <fcntl.h>
 #include <signal.h>
 #include <sys/stat.h>
 #include <unistd.h>
@@ -15,8 +14,8 @@
 
 #include <fmt/format.h>
 
-#include "base/descriptor.h"
 #include "base/text.h"
+#include "base/whole_file.h"
 
 namespace limber {
 
@@ -45,26 +44,6 @@ void clear_leftovers(const std::string& path) {
     if (!pid || *pid < 1 || *pid > 4194304 || kill(static_cast<pid_t>(*pid), 0) == 0 || errno != ESRCH) continue;
     fs::remove(entry.path(), gone);
   }
-}
-
-Result<void> write_whole(const std::string& path, std::string_view text, mode_t mode) {
-  const Descriptor file(open(path.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC | O_NOFOLLOW, mode));
-  if (file.fd() < 0) return Error{reason()};
-  while (!text.empty()) {
-    const ssize_t n = write(file.fd(), text.data(), text.size());
-    if (n < 0 && errno == EINTR) continue;
-    if (n <= 0) return Error{reason()};
-    text.remove_prefix(static_cast<std::size_t>(n));
-  }
-  if (fchmod(file.fd(), mode) != 0 || fsync(file.fd()) != 0) return Error{reason()};
-  return {};
-}
-
-// the name in the folder is on the disk too
-void sync_folder(const fs::path& file) {
-  const std::string folder = file.has_parent_path() ? file.parent_path().string() : ".";
-  const Descriptor opened(open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
-  if (opened.fd() >= 0) (void)fsync(opened.fd());
 }
 
 // a link stays a link: what it points to is replaced

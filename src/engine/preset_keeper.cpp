@@ -23,6 +23,7 @@ void PresetKeeper::save(std::shared_ptr<const PresetList> presets) {
   {
     const std::scoped_lock lock(mutex_);
     wanted_.swap(presets);
+    saved_.store(false);
   }
   changed_.notify_all();
   if (!thread_.joinable()) thread_ = std::thread([this] { run(); });
@@ -51,6 +52,7 @@ void PresetKeeper::run() {
     }
     lock.lock();
     writing_ = false;
+    if (saved.ok() && wanted_ == nullptr) saved_.store(true);
     changed_.notify_all();
   }
 }

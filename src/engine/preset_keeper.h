@@ -2,6 +2,7 @@
 // saves in a burst the last one is written.
 #pragma once
 
+#include <atomic>
 #include <condition_variable>
 #include <functional>
 #include <memory>
@@ -29,6 +30,8 @@ class PresetKeeper {
   const std::string& path() const { return file_.path(); }
   /// Soon it is on the disk. Waits for nothing. [sim]
   void save(std::shared_ptr<const PresetList> presets);
+  /// Whether what save() was given last is on the disk. [any]
+  bool saved() const { return saved_.load(); }
   /// Returns when all that was to be saved is, or has failed. [any but sim]
   void finish();
 
@@ -41,6 +44,7 @@ class PresetKeeper {
   std::condition_variable changed_;
   std::shared_ptr<const PresetList> wanted_;
   bool writing_ = false;
+  std::atomic<bool> saved_{true};
   bool end_ = false;
   std::thread thread_;  // from the first save on
 };

@@ -61,6 +61,16 @@ class Presets {
   void advance(World& world);
   /// Makes ready for a store; once a tick.
   void prepare(const World& world) { taker_.prepare(world.store()); }
+  /// These values are in force, as after a recall; the answer: what was left out.
+  Result<std::string> bring_back(World& world, const std::shared_ptr<const Preset>& values) {
+    return go(world, Blend::of(values), 0, Easing::linear);
+  }
+  /// Every property as it is now.
+  std::shared_ptr<const Preset> everything(const Store& store) { return *taker_.take(store, "everything", {}); }
+  /// Whether that costs no more than copying.
+  bool ready(const Store& store) const { return taker_.ready(store); }
+  /// Whether all that was stored is on the disk.
+  bool saved() const { return keeper_ == nullptr || keeper_->saved(); }
   /// A recall that the hand remembers, after a reset.
   void repeat(World& world, const Blend& blend);
 

@@ -69,6 +69,7 @@ Reload::End Reload::take(Draft& draft, Stage& stage) {
   const bool from_disk = draft.order().inputs.sources == nullptr;
   if (from_disk) {
     keep_files({});
+    stage.world.panic().end();  // the mended scene plays
     say_mended();
     log_info("{} was read again", stage.scene->fault().file);
   }

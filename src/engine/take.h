@@ -47,6 +47,7 @@ struct TakeBegin {
   std::vector<std::string> package_paths;
   std::string preset;         ///< --preset.
   std::vector<Message> sets;  ///< --set.
+  PresetList recovered;       ///< --recover: one, or none.
   // of a reset
   std::uint64_t world_seed = 1;  ///< In force.
   std::uint64_t scene_seed = 1;  ///< As the scene's run had left it.

@@ -136,6 +136,7 @@ std::string text_of(const TakeBegin& begin) {
   out.text(text_of(begin.presets));
   out.number(begin.hand.size());
   for (const TakeHand& step : begin.hand) write_hand(out, forms, step);
+  if (!begin.recovered.empty()) out.text(text_of(begin.recovered));
   return text;
 }
 
@@ -162,7 +163,7 @@ bool read_begin(std::string_view bytes, TakeBegin& begin) {
   for (std::size_t left = in.count(); left > 0; left--) {
     if (!read_hand(in, forms, begin.hand.emplace_back())) return false;
   }
-  return in.done();
+  return in.done() || (!in.bad() && read_presets(in, begin.recovered) && in.done());
 }
 
 void append_tick(std::string& text, const TakeTick& tick, std::size_t message_count, std::string_view messages) {

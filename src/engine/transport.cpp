@@ -23,6 +23,7 @@ const Table& Transport::table() {
           act<&Transport::act_pause>(action("pause", 0, 0, "Time stands still.")),
           act<&Transport::act_step>(action("step", 0, 1, "So many ticks (1), then stands still.")),
           act<&Transport::act_reset>(action("reset", 0, 0, "The scene from its start, with the performer's values.")),
+          act<&Transport::act_panic>(action("panic", 0, 0, Panic::kDoc)),
           live(readout(number("speed_reached", "× real time", 1, 0, kUnbounded,
                               "Simulated seconds per real second, over the last half second."))),
       });
@@ -69,6 +70,11 @@ Result<void> Transport::act_step(std::span<const double> args) {
 
 Result<void> Transport::act_reset(std::span<const double>) {
   world_.ask_reset();
+  return {};
+}
+
+Result<void> Transport::act_panic(std::span<const double>) {
+  world_.ask_panic();
   return {};
 }
 

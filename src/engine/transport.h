@@ -1,4 +1,5 @@
-// Transport and telemetry: the nodes /transport (play, pause, step, reset) and /osc (what came in and was lost). [sim]
+// Transport and telemetry: the nodes /transport (play, pause, step, reset, panic) and /osc (what came in and was lost).
+// [sim]
 #pragma once
 
 #include <utility>
@@ -25,6 +26,7 @@ class Transport {
   Result<void> act_pause(std::span<const double> args);
   Result<void> act_step(std::span<const double> args);
   Result<void> act_reset(std::span<const double> args);
+  Result<void> act_panic(std::span<const double> args);
   void set_paused(bool paused);
 
   World& world_;

@@ -161,6 +161,8 @@ void camera_follow(void* c, std::int32_t slot, std::int32_t generation) {
 
 void ask_reset(void* c) { context_of(c).reset_wanted = true; }
 
+void ask_panic(void* c) { context_of(c).panic_wanted = true; }
+
 void param_begin(void* c) { context_of(c).param_rows.clear(); }
 
 std::int32_t param_row(void* c, const char* name, std::int32_t length, std::int32_t type, const double* initial,

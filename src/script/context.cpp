@@ -73,13 +73,13 @@ void ScriptContext::count_call() {
 
 void ScriptContext::begin_call() {
   count_call();
-  reset_wanted = false;
+  reset_wanted = panic_wanted = false;
   means_of_all = {};
   world->undo().begin();
 }
 
 bool ScriptContext::next_call() {
-  if (!world->undo().untouched() || !held.empty() || reset_wanted) {
+  if (!world->undo().untouched() || !held.empty() || reset_wanted || panic_wanted) {
     end_call(true);
     begin_call();
     return true;
@@ -105,6 +105,7 @@ void ScriptContext::end_call(bool good) {
     }
     for (Message& wish : preset_wishes) host.ask_preset(std::move(wish));
     if (reset_wanted) host.ask_reset();
+    if (panic_wanted) host.ask_panic();
   } else {
     forces.take_back();
     world->undo().take_back();

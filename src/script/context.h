@@ -101,6 +101,7 @@ struct ScriptContext {
   std::size_t held_text = 0;  ///< Bytes of text in them.
   std::vector<Message> preset_wishes;
   bool reset_wanted = false;
+  bool panic_wanted = false;
   ForceQueue forces;
   /// From here on everything that a script does is kept for the undo.
   void begin_call();

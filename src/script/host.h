@@ -27,6 +27,8 @@ class ScriptHost {
   virtual void plan_osc(const OscPlan& plan) = 0;
   /// sim:reset() from a callback: done between two ticks.
   virtual void ask_reset() = 0;
+  /// sim:panic() from a callback: done before the next step.
+  virtual void ask_panic() {}
   /// presets:store, recall, morph, delete from a callback, as the message that means it: whether it would be taken,
   /// were those of `before` done.
   virtual Result<void> check_preset(const Message& wish, std::span<const Message> before) {

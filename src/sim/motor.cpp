@@ -122,6 +122,7 @@ Motor::Motor(Joint& joint, NodeId group)
     store.tell(id_, *axis_rows().servo_active[half])[own % 3] = 1;
     store.tell(id_, *axis_rows().servo_position[half])[own % 3] = joint_.value();
   }
+  hold_here();
   joint_.set_motor(this);
 }
 
@@ -186,6 +187,10 @@ void Motor::lead_to(const Vec3& target, double most) {
   }
 }
 
+void Motor::hold_here() {
+  for (int axis = 0; axis < 6; axis++) hold_[at(axis)] = joint_.constraint().value(axis);
+}
+
 void Motor::follow() {
   if (!joint_.spec().mimic) return;
   const Mimic& mimic = *joint_.spec().mimic;
@@ -200,6 +205,7 @@ void Motor::effect_axes() {
   const double* kept = store.kept_block(id_);
   JointConstraint& constraint = joint_.constraint();
   const AxisRows& rows = axis_rows();
+  const Panic& panic = joint_.body().world().panic();
   for (int axis = 0; axis < 6; axis++) {
     const auto half = static_cast<std::size_t>(axis / 3);
     const auto number = [&](const std::array<const Row*, 2>& r) {
@@ -207,12 +213,12 @@ void Motor::effect_axes() {
     };
     if (!joint_.is_open(axis)) continue;  // its drive comes when its limits open
     AxisSettings settings = constraint.axis(axis);
-    settings.drive = static_cast<AxisDrive>(mode(axis));
+    settings.drive = panic.drive(mode(axis));
     settings.max_force = number(rows.max_force);
     settings.stiffness = number(rows.stiffness);
     settings.spring_damping = number(rows.damping);
     constraint.set_axis(axis, settings);
-    if (settings.drive == AxisDrive::spring && number(rows.active) != 0) say_contradiction(axis);
+    if (mode(axis) == MotorMode::spring && number(rows.active) != 0) say_contradiction(axis);
   }
   constraint.set_bounce(store.values(id_, *rows.bounce)[0]);
   constraint.set_damping(store.values(id_, *rows.passive_damping)[0]);
@@ -224,12 +230,14 @@ void Motor::effect_goals() {
   const double* kept = std::as_const(joint_.body().store()).kept_block(id_);
   JointConstraint& constraint = joint_.constraint();
   const AxisRows& rows = axis_rows();
+  const Panic& panic = joint_.body().world().panic();
+  const bool held = panic.on() && panic.holds_motors();
   for (int axis = 0; axis < 6; axis++) {
     if (!joint_.is_open(axis)) continue;
     const auto half = static_cast<std::size_t>(axis / 3);
     const double* const own = kept + axis % 3;
-    constraint.set_goal(axis, own[rows.servo_position[half]->offset], own[rows.rest[half]->offset],
-                        own[rows.velocity[half]->offset]);
+    constraint.set_goal(axis, held ? hold_[at(axis)] : own[rows.servo_position[half]->offset],
+                        own[rows.rest[half]->offset], held ? Panic::kSink : own[rows.velocity[half]->offset]);
   }
 }
 

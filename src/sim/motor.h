@@ -1,6 +1,7 @@
 // Motor: what drives a joint, axis by axis: off, spin, servo or spring. It carries the joint's name. [sim]
 #pragma once
 
+#include <array>
 #include <string>
 
 #include "params/store.h"
@@ -34,6 +35,8 @@ class Motor {
   /// (rad, the joint's own order), at most `most` ahead; on a free axis the shorter way round.
   void lead_to(const Vec3& target, double most);
 
+  /// Where the joint is now is what a panic that holds motors holds.
+  void hold_here();
   /// Before Bullet steps: a follower's target from its leader.
   void follow();
   /// A spring of it was held below its stiffness: said once, with the cure.
@@ -63,6 +66,7 @@ class Motor {
   Joint& joint_;
   NodeId id_;
   const Joint* leader_ = nullptr;  // of a follower, once it was looked for
+  std::array<double, 6> hold_{};
   bool said_contradiction_ = false;
   bool said_cap_ = false;
 };

@@ -33,6 +33,14 @@ void PartLoads::clear(std::uint32_t place) {
   kicks_[place] = {};
 }
 
+void PartLoads::drop() {
+  for (const std::uint32_t place : waiting_) {
+    loads_[place].waits = false;
+    clear(place);
+  }
+  waiting_.clear();
+}
+
 void PartLoads::push() {
   for (const std::uint32_t place : waiting_) {
     Load& load = loads_[place];

@@ -46,6 +46,8 @@ class PartLoads {
     return place == kNone ? nullptr : &load(place);
   }
   void clear(std::uint32_t place);
+  /// What waits is lost.
+  void drop();
   /// Before Bullet steps: hands over what waits. Nothing waits longer.
   void push();
 

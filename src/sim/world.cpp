@@ -44,6 +44,9 @@ const Table& World::table() {
           integer("substeps", 4, 1, 1000, "Equal internal steps that a tick is made of."),
           effect<&World::effect_solver>(integer("solver_iterations", 50, 1, 10000,
                                                 "Rounds of the contact and joint solver in each internal step.")),
+          effect<&World::effect_panic_motors>(
+              choice("panic_motors", {"held", "limp"}, 0,
+                     "What motors do while a panic holds: stay where they are, with their own strength, or nothing.")),
           choice("solver", {"iterative"}, 0, "How joints and contacts are solved."),
           live(state(
               integer("seed", 1, 0, 9007199254740992,
@@ -52,6 +55,8 @@ const Table& World::table() {
           live(state(number("speed", "× real time", 1, 0.01, 100, "How fast simulated time runs when it is paced."))),
           live(readout(number("time", "s", 0, 0, kUnbounded, "Simulated time."))),
           live(readout(integer("tick", 0, 0, kUnbounded, "Ticks since the start."))),
+          live(readout(boolean("panicked", false, "A panic holds: everything comes to rest."))),
+          act<&World::act_panic>(action("panic", 0, 0, Panic::kDoc)),
           act<&World::act_reset>(action("reset", 0, 0, "The scene from its start, with the performer's values.")),
       });
   return table;
@@ -70,6 +75,7 @@ World::World(Store& store, const WorldSetup& setup) : store_(store), bullet_(std
 World::~World() { clear(); }
 
 void World::clear() {
+  panic_.end();
   behaviors_->clear();
   bodies_.clear();
   shapes_.clear();
@@ -166,7 +172,7 @@ std::uint64_t World::seed() const { return static_cast<std::uint64_t>(store_.val
 
 void World::effect_gravity() {
   const double* g = store_.values(id_, *world_rows().gravity);
-  bullet_->setGravity(to_bt(Vec3(g[0], g[1], g[2])));
+  bullet_->setGravity(to_bt(panic_.weight(Vec3(g[0], g[1], g[2]))));
 }
 
 void World::effect_solver() {
@@ -175,6 +181,11 @@ void World::effect_solver() {
 
 Result<void> World::act_reset(std::span<const double>) {
   reset_asked_ = true;
+  return {};
+}
+
+Result<void> World::act_panic(std::span<const double>) {
+  panic_asked_ = true;
   return {};
 }
 
@@ -188,13 +199,14 @@ void World::settle() {
 
 void World::step() {
   const double begin = clock_seconds();
-  behaviors_->step(timestep());
+  if (!panic_.on()) behaviors_->step(timestep());
   const double start = clock_seconds();
   settle();
   for (const auto& body : bodies_) {
     if (std::exchange(body->fresh_, false)) body->take_start_pose();
-    if (body->in_world()) body->follow_leaders();
+    if (body->in_world() && !panic_.on()) body->follow_leaders();
   }
+  if (panic_.on()) loads_.drop();
   loads_.push();
   contacts_.begin_tick();
   const double before = clock_seconds();
@@ -215,8 +227,9 @@ void World::step() {
   times_ = {start - begin, before - start, after - before, clock_seconds() - after};
 }
 
-void World::after_internal_step(btDynamicsWorld* bullet, btScalar) {
+void World::after_internal_step(btDynamicsWorld* bullet, btScalar h) {
   World& world = *static_cast<World*>(bullet->getWorldUserInfo());
+  if (world.panic_.on()) world.panic_.brake(static_cast<double>(h));
   world.contacts_.gather(*bullet->getDispatcher());
   // what is no number must not reach the next internal step, where it would spread
   for (const auto& body : world.bodies_) {
@@ -290,6 +303,7 @@ std::uint64_t World::state_hash() const {
   const double moment[] = {time(), static_cast<double>(tick_), static_cast<double>(seed())};
   hash = hash_bytes({reinterpret_cast<const char*>(moment), sizeof moment}, hash);
   for (const auto& body : bodies_) hash = body->state_hash(hash);
+  if (panic_.on()) hash = hash_bytes("panic", hash);
   return behaviors_->state_hash(hash);
 }
 

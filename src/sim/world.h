@@ -15,6 +15,7 @@
 #include "sim/camera_moves.h"
 #include "sim/contacts.h"
 #include "sim/island_world.h"
+#include "sim/panic.h"
 #include "sim/part_solids.h"
 #include "sim/shape.h"
 #include "sim/visuals.h"
@@ -89,6 +90,12 @@ class World {
   void ask_reset() { reset_asked_ = true; }
   /// Whether sim:reset or /transport/reset asked for a reset since the last call.
   bool take_reset_request() { return std::exchange(reset_asked_, false); }
+  /// Between two ticks, or before the next step, by whoever runs the scene.
+  void ask_panic() { panic_asked_ = true; }
+  /// Whether sim:panic or /transport/panic asked since the last call; several times are one.
+  bool take_panic_request() { return std::exchange(panic_asked_, false); }
+  Panic& panic() { return panic_; }
+  const Panic& panic() const { return panic_; }
   /// Removes every behaviour, body and shape; the world's own rows return to their defaults.
   void clear();
   /// Effects without entering Bullet's world: for one that is only described, never stepped.
@@ -118,14 +125,17 @@ class World {
 
  private:
   friend class Body;
+  friend class Panic;
   friend class WorldUndo;
   void effect_gravity();
   void effect_solver();
+  void effect_panic_motors() { panic_.renew(); }
   void settle_healed();
   void heal(Body& body, const Part& part, const char* what);
   static void after_internal_step(btDynamicsWorld* bullet, btScalar h);
   Result<void> name_is_free(NodeId group, std::string_view kind, std::string_view name) const;
   Result<void> act_reset(std::span<const double> args);
+  Result<void> act_panic(std::span<const double> args);
 
   Store& store_;
   NodeId id_, body_group_, shape_group_;
@@ -144,10 +154,12 @@ class World {
   std::unordered_map<const BodyModel*, ModelGeometry> geometries_;
   Contacts contacts_;
   WorldUndo undo_{*this};
+  Panic panic_{*this};
   TickTimes times_;
   std::uint64_t tick_ = 0;
   std::uint64_t health_events_ = 0;
   bool reset_asked_ = false;
+  bool panic_asked_ = false;
   bool healed_ = false;  // a body, in this tick
 };
 

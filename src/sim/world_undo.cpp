@@ -47,6 +47,7 @@ void WorldUndo::begin() {
   bodies_.clear();
   motions_.clear();
   reset_asked_ = world_.reset_asked_;
+  panic_asked_ = world_.panic_asked_;
   world_.behaviors_->undo().begin();
   world_.store_.begin_undo();
 }
@@ -69,10 +70,12 @@ void WorldUndo::take_back() {
   for (auto entry = entries_.rbegin(); entry != entries_.rend(); ++entry) entry->step(entry->owner, entry->value);
   world_.store_.take_back();
   world_.reset_asked_ = reset_asked_;
+  world_.panic_asked_ = panic_asked_;
 }
 
 bool WorldUndo::untouched() const {
-  return entries_.empty() && world_.store_.undo_untouched() && world_.reset_asked_ == reset_asked_;
+  return entries_.empty() && world_.store_.undo_untouched() && world_.reset_asked_ == reset_asked_ &&
+         world_.panic_asked_ == panic_asked_;
 }
 
 void WorldUndo::note(Step step, void* owner, std::size_t value) {

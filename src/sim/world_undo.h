@@ -71,6 +71,7 @@ class WorldUndo {
   World& world_;
   bool active_ = false;
   bool reset_asked_ = false;
+  bool panic_asked_ = false;
   std::uint64_t call_ = 0;
   std::vector<Entry> entries_;
   std::vector<Forces> forces_;

@@ -6,6 +6,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <atomic>
 #include <csignal>
 #include <cstdlib>
 #include <filesystem>
@@ -35,6 +36,40 @@ inline std::string content(const std::filesystem::path& file) {
   return {std::istreambuf_iterator<char>(in), {}};
 }
 
+/// A folder that goes when the test is over.
+class Folder {
+ public:
+  Folder() {
+    static std::atomic<int> count{0};
+    path_ =
+        std::filesystem::path(::testing::TempDir()) / fmt::format("limber_app_{}_{}", ::getpid(), count.fetch_add(1));
+    std::filesystem::create_directories(path_);
+  }
+  ~Folder() {
+    std::error_code ignored;
+    std::filesystem::remove_all(path_, ignored);
+  }
+  Folder(const Folder&) = delete;
+  Folder& operator=(const Folder&) = delete;
+
+  std::string path() const { return path_.string(); }
+  std::string file(const std::string& name, const std::string& text) const {
+    const std::filesystem::path path = path_ / name;
+    std::filesystem::create_directories(path.parent_path());
+    std::ofstream(path) << text;
+    return path.string();
+  }
+
+ private:
+  std::filesystem::path path_;
+};
+
+/// What programs of these tests remember of themselves goes there, unless a test says otherwise.
+inline std::string state_folder() {
+  static const Folder folder;
+  return folder.path();
+}
+
 /// A program that runs in a folder (the checkout), with its output read as it comes. What still runs at the end is
 /// ended, by its id.
 class Running {
@@ -47,8 +82,10 @@ class Running {
     argv.reserve(words.size() + 1);
     for (const std::string& word : words) argv.push_back(const_cast<char*>(word.c_str()));
     argv.push_back(nullptr);
+    const std::string state = state_folder();
     pid_ = fork();
     if (pid_ == 0) {
+      setenv("XDG_STATE_HOME", state.c_str(), 1);
       if (chdir(folder.c_str()) != 0) _exit(126);
       dup2(open("/dev/null", O_RDONLY), 0);
       dup2(out[1], 1);
@@ -154,33 +191,6 @@ inline std::vector<std::string> without_leak_search() {
 inline Ran run(std::vector<std::string> args, const std::string& folder = LIMBER_SOURCE_DIR) {
   return Running(limber(std::move(args)), folder).finish();
 }
-
-/// A folder that goes when the test is over.
-class Folder {
- public:
-  Folder() {
-    static int count = 0;
-    path_ = std::filesystem::path(::testing::TempDir()) / fmt::format("limber_app_{}_{}", ::getpid(), count++);
-    std::filesystem::create_directories(path_);
-  }
-  ~Folder() {
-    std::error_code ignored;
-    std::filesystem::remove_all(path_, ignored);
-  }
-  Folder(const Folder&) = delete;
-  Folder& operator=(const Folder&) = delete;
-
-  std::string path() const { return path_.string(); }
-  std::string file(const std::string& name, const std::string& text) const {
-    const std::filesystem::path path = path_ / name;
-    std::filesystem::create_directories(path.parent_path());
-    std::ofstream(path) << text;
-    return path.string();
-  }
-
- private:
-  std::filesystem::path path_;
-};
 
 /// The program as it is installed: in bin, with a scene and an (empty) urdf folder in share/limber.
 inline std::string install_copy(const Folder& folder) {

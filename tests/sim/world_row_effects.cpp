@@ -1,4 +1,6 @@
 // What the rows of the world and of bodies do, as numbers measured in the world.
+#include <cmath>
+
 #include "sim/row_effects.h"
 #include "sim/stage.h"
 
@@ -44,6 +46,21 @@ void substeps() {
     EXPECT_NEAR(ball.pose().position.z, -expected, 2e-6 * expected) << n;
     // a resolution: the finer, the nearer to g·t²/2
     EXPECT_NEAR(expected - 9.81 / 8, 9.81 / 4 / 60 / n, 1e-12);
+  }
+}
+
+// Without weight a spinning joint stops where its motor holds it, and loses its speed with time where not.
+void panic_motors() {
+  for (const double motors : {0.0, 1.0}) {
+    OneAxis s(5);
+    s.set(s.motor.id(), "mode", {1});
+    s.of_motor("velocity", 2);
+    s.set(s.world.id(), "panic_motors", {motors});
+    s.ticks(30);
+    EXPECT_NEAR(s.v(), 2, 1e-3);
+    s.world.panic().begin();
+    s.ticks(6);
+    EXPECT_NEAR(s.v(), motors == 0 ? 0 : 2 * std::exp(-Panic::kBrake / 10), 0.02);
   }
 }
 
@@ -221,6 +238,7 @@ void body_self_collision() {
 
 void add_world_effects(RowEffects& effects) {
   effects[{"World", "gravity"}] = gravity;
+  effects[{"World", "panic_motors"}] = panic_motors;
   effects[{"World", "timestep"}] = timestep;
   effects[{"World", "substeps"}] = substeps;
   effects[{"World", "solver_iterations"}] = solver_iterations;

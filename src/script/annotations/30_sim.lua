@@ -137,6 +137,9 @@ function sim:at(time, f) end
 ---@action sim reset
 function sim:reset() end
 
+---@action sim panic
+function sim:panic() end
+
 ---Text that is the same when the world is the same to the bit.
 ---@return string
 function sim:state_hash() end

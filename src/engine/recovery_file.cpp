@@ -1,0 +1,198 @@
+// A place is held by a lock on a file beside; a first line says what the values are of, presets' text follows.
+#include "engine/recovery_file.h"
+
+#include <fcntl.h>
+#include <sys/file.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <system_error>
+#include <unordered_map>
+#include <utility>
+#include <vector>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "base/random.h"
+#include "base/text.h"
+#include "base/whole_file.h"
+#include "engine/preset_text.h"
+
+namespace limber {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+constexpr int kMostPlaces = 64;  // programs that play one scene at once
+constexpr const char* kHead = "limber recovery";
+constexpr int kVersion = 1;
+
+std::string reason() { return std::generic_category().message(errno); }
+
+// a lock that nobody else has, on a file that still has this name; none: somebody has it
+Result<Descriptor> lock_file(const std::string& path) {
+  while (true) {
+    Descriptor file(open(path.c_str(), O_RDWR | O_CREAT | O_CLOEXEC | O_NOFOLLOW, 0600));
+    if (!file.open()) return Error{fmt::format("{}: {}", printable(path), reason())};
+    if (flock(file.fd(), LOCK_EX | LOCK_NB) != 0) {
+      if (errno == EWOULDBLOCK) return Descriptor();
+      return Error{fmt::format("{}: {}", printable(path), reason())};
+    }
+    struct stat held {};
+    struct stat named {};
+    // who has ended just now has taken the name away
+    if (fstat(file.fd(), &held) == 0 && stat(path.c_str(), &named) == 0 && held.st_ino == named.st_ino) return file;
+  }
+}
+
+bool same_values(const double* a, const double* b, std::uint32_t count) {
+  return std::memcmp(a, b, count * sizeof *a) == 0;
+}
+
+// whether the label of a choice, or the numbers of another row, are the same
+bool same_row(const PresetRow& a, const double* in_a, const PresetRow& b, const double* in_b) {
+  if (a.type != b.type || a.width != b.width) return false;
+  if (a.type != RowType::choice) return same_values(in_a, in_b, a.width);
+  return a.labels[static_cast<std::size_t>(in_a[0])] == b.labels[static_cast<std::size_t>(in_b[0])];
+}
+
+}  // namespace
+
+std::string LostValues::when() const {
+  const auto text = [](std::time_t time, const char* form) {
+    std::tm here{};
+    localtime_r(&time, &here);
+    char out[32] = {};
+    (void)std::strftime(out, sizeof out, form, &here);
+    return std::string(out);
+  };
+  const bool today = text(saved, "%F") == text(std::time(nullptr), "%F");
+  return text(saved, today ? "%T" : "%F %T");
+}
+
+std::string LostValues::offer() const {
+  const std::size_t count = values->shape->row_count();
+  return fmt::format("the last run of this scene did not end well; {} value{} of {} can be brought back: --recover",
+                     count, count == 1 ? "" : "s", when());
+}
+
+std::shared_ptr<const Preset> changed_values(const Preset& now, const Preset& script) {
+  std::unordered_map<std::string, std::uint32_t> said;
+  for (std::uint32_t i = 0; i < script.shape->things().size(); i++) {
+    if (script.shape->rows(script.shape->things()[i]) != nullptr) said.emplace(script.shape->path(i), i);
+  }
+  PresetBuilder builder;
+  bool any = false;
+  for (std::uint32_t i = 0; i < now.shape->things().size(); i++) {
+    const PresetShape::Thing& thing = now.shape->things()[i];
+    const PresetClass* const rows = now.shape->rows(thing);
+    if (rows == nullptr) continue;
+    const std::string path = now.shape->path(i);
+    const auto known = said.find(path);
+    const PresetShape::Thing* const other = known == said.end() ? nullptr : &script.shape->things()[known->second];
+    const PresetClass* const others = other == nullptr ? nullptr : script.shape->rows(*other);
+    PresetClass changed;
+    std::vector<double> values;
+    for (std::size_t k = 0; k < rows->rows.size(); k++) {
+      const PresetRow& row = rows->rows[k];
+      const double* const in_now = now.values.data() + thing.at + rows->offsets[k];
+      const int at = others == nullptr ? -1 : others->find(row.name);
+      if (at >= 0) {
+        const auto there = static_cast<std::size_t>(at);
+        const double* const in_script = script.values.data() + other->at + others->offsets[there];
+        if (same_row(row, in_now, others->rows[there], in_script)) continue;
+      }
+      changed.add(row);
+      values.insert(values.end(), in_now, in_now + row.width);
+    }
+    if (changed.rows.empty()) continue;
+    any = true;
+    builder.give(builder.thing(path), std::move(changed), values);
+  }
+  if (!any) return nullptr;
+  PresetChoice choice;
+  choice.rows = {"//*"};  // these alone
+  return builder.finish("recovered", std::move(choice));
+}
+
+Result<std::unique_ptr<RecoveryFile>> RecoveryFile::open(const std::string& folder, const std::string& scene) {
+  std::error_code fault;
+  const fs::path whole = fs::weakly_canonical(fs::absolute(scene, fault), fault);
+  std::unique_ptr<RecoveryFile> file(new RecoveryFile);
+  file->scene_ = fault ? scene : whole.string();
+  fault.clear();
+  if (!fs::is_directory(folder, fault)) {
+    fs::create_directories(folder, fault);
+    if (fault) return Error{fmt::format("{}: {}", printable(folder), fault.message())};
+    fs::permissions(folder, fs::perms::owner_all, fault);
+  }
+  const std::string name =
+      fmt::format("{}/{}-{:016x}", folder, fs::path(file->scene_).stem().string(), hash_bytes(file->scene_));
+  for (int n = 1; n <= kMostPlaces; n++) {
+    file->base_ = n == 1 ? name : fmt::format("{}-{}", name, n);
+    Result<Descriptor> lock = lock_file(file->locked_file());
+    if (!lock) return Error{lock.error()};
+    if (!lock->open()) continue;
+    file->lock_ = std::move(*lock);
+    // the newest that was lost is the one that counts
+    if (fs::exists(file->saved_file(), fault)) (void)std::rename(file->saved_file().c_str(), file->lost_file().c_str());
+    return file;
+  }
+  return Error{fmt::format("{} programs play {} already", kMostPlaces, printable(file->scene_))};
+}
+
+Result<std::optional<LostValues>> RecoveryFile::lost() const {
+  std::ifstream in(lost_file(), std::ios::binary);
+  if (!in) return std::optional<LostValues>();
+  const std::string text{std::istreambuf_iterator<char>(in), {}};
+  const auto bad = [&](std::string_view why) {
+    return Error{fmt::format("{}: {}; the values of a run that did not end well can't be brought back",
+                             printable(lost_file()), why)};
+  };
+  const std::size_t line = text.find('\n');
+  const auto head = nlohmann::json::parse(text.substr(0, line), nullptr, false);
+  if (line == std::string::npos || !head.is_object() || !head.contains(kHead) || !head[kHead].is_number_integer())
+    return bad("it is damaged");
+  if (head[kHead] != kVersion) return bad("it is of another version of Limber");
+  if (!head.contains("saved") || !head["saved"].is_number_integer()) return bad("it is damaged");
+  Result<PresetsRead> read = presets_of(std::string_view(text).substr(line + 1));
+  if (!read) return bad(read.error());
+  if (read->presets.size() != 1 || !read->problems.empty()) return bad("it is damaged");
+  return std::optional(LostValues{read->presets.front(), head["saved"].get<std::time_t>()});
+}
+
+Result<void> RecoveryFile::save(const std::shared_ptr<const Preset>& values, std::time_t now) {
+  if (values == nullptr) {
+    unlink(saved_file().c_str());
+    return {};
+  }
+  const nlohmann::ordered_json head = {{kHead, kVersion}, {"scene", scene_}, {"saved", now}};
+  using Json = nlohmann::ordered_json;
+  const std::string text =
+      head.dump(-1, ' ', false, Json::error_handler_t::replace) + "\n" + text_of(PresetList{values});
+  Result<void> written = write_whole(fresh_file(), text, 0600);
+  if (written && std::rename(fresh_file().c_str(), saved_file().c_str()) != 0) written = Error{reason()};
+  if (!written) {
+    unlink(fresh_file().c_str());
+    return Error{fmt::format("{}: {}", printable(saved_file()), written.error())};
+  }
+  sync_folder(saved_file());
+  return {};
+}
+
+void RecoveryFile::end(bool lost_too) {
+  unlink(saved_file().c_str());
+  unlink(fresh_file().c_str());
+  if (lost_too) unlink(lost_file().c_str());
+  unlink(locked_file().c_str());
+  lock_ = {};
+}
+
+}  // namespace limber

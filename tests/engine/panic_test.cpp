@@ -1,0 +1,190 @@
+// The panic button: one message brings every show to rest, and the next brings it back.
+#include <algorithm>
+#include <cmath>
+
+#include "engine/edited.h"
+#include "engine/taken.h"
+
+namespace limber::engine_test {
+namespace {
+
+// J of all that moves
+double energy(World& world) {
+  double sum = 0;
+  for (const auto& body : world.bodies()) {
+    for (const auto& part : body->parts()) {
+      if (part->is_static() || !body->in_world()) continue;
+      const Vec3 v = part->linear_velocity();
+      const Vec3 w = glm::conjugate(part->principal_axes()) * part->angular_velocity();
+      sum += 0.5 * part->mass() * (glm::dot(v, v) + glm::dot(part->geometry()->unit_inertia, w * w));
+    }
+  }
+  return sum;
+}
+
+constexpr const char* kPanicScene = R"(
+sim.gravity = vec3(0, 0, 0)
+params { { "push", 0 } }
+state.steps, state.beats = 0, 0
+local ball = sim:add_body("ball"):add_part("ball", sim:add_sphere_shape("ball", 0.1), { position = vec3(0, 0, 5) })
+sim:body("ball"):add_behavior("force", "wind", { amp = 2 })
+sim:on_step(function() state.steps = state.steps + 1; ball:apply_force(vec3(0, 3, 0)) end)
+sim:every(0.1, function() state.beats = state.beats + 1 end)
+osc:on("/steps", function() osc:reply("/steps", state.steps, state.beats) end)
+osc:on("/push", function() ball:apply_impulse(vec3(0, 0, 100)) end)
+osc:on("/panic", function() sim:panic() end)
+)";
+
+constexpr const char* kBallSpeed = "/physics/body/ball/part/ball/linear_velocity";
+constexpr const char* kPanicked = "/physics/sim/panicked";
+
+std::string answer(Show& show, const char* address) {
+  show.outbox();
+  show.send(address);
+  show.ticks(1);
+  for (const std::string& said : show.outbox()) {
+    if (said.starts_with(address)) return said;
+  }
+  return {};
+}
+
+TEST(PanicButton, EveryShowOfOursComesToRest) {
+  for (const char* scene : {"arms", "hello", "live", "quadruped", "swarm"}) {
+    for (const double motors : {0.0, 1.0}) {
+      Show show(std::string(LIMBER_SOURCE_DIR) + "/scripts/" + scene + ".lua");
+      World& world = show.engine.world();
+      show.ticks(60);
+      Random random(1, "blows");
+      for (const auto& body : world.bodies()) {
+        for (const auto& part : body->parts()) part->apply_impulse(random.direction() * 8.0 * part->mass());
+      }
+      show.send("/physics/sim/panic_motors", motors);
+      show.ticks(1);
+      const double before = energy(world);
+      ASSERT_GT(before, 0.5) << scene;
+      show.send("/transport/panic");
+      show.ticks(120);
+      EXPECT_LT(energy(world), 0.01 * before) << scene << " " << motors;
+      EXPECT_EQ(show.read(kPanicked), 1);
+    }
+  }
+}
+
+TEST(PanicButton, ScriptsRestWhileItHoldsAndMessagesAreHeard) {
+  const SceneFile file(kPanicScene);
+  Show show(file.path());
+  show.ticks(60);
+  EXPECT_NEAR(show.read(kBallSpeed, 0), 2, 0.05) << "1 kg, pushed with 2 N for a second";
+  show.send("/transport/panic");
+  show.ticks(60);
+  EXPECT_LT(std::abs(show.read(kBallSpeed, 1)), 0.02);
+  const std::string before = answer(show, "/steps");
+  ASSERT_FALSE(before.empty());
+  show.send("/push");
+  show.send("/physics/part/hold", "ball", "ball", 0, 0, 0, 9, 9, 9);
+  show.send("/physics/part/force", "ball", "ball", 50, 0, 0);
+  show.send("/physics/sim/gravity", 1, 2, 3);
+  show.ticks(1);
+  EXPECT_LT(std::abs(show.read(kBallSpeed, 2)), 0.02) << "no force gets through";
+  EXPECT_EQ(show.read("/physics/sim/gravity", 2), 3) << "a value does";
+  EXPECT_EQ(answer(show, "/steps"), before);
+  EXPECT_EQ(show.read("/physics/body/ball/behavior/wind/active"), 1);
+}
+
+TEST(PanicButton, AScriptMayPressIt) {
+  const SceneFile file(kPanicScene);
+  Show show(file.path());
+  show.send("/panic");
+  show.ticks(1);
+  EXPECT_EQ(show.read(kPanicked), 1);
+  show.send("/panic");
+  show.send("/panic");
+  show.ticks(1);
+  EXPECT_EQ(show.read(kPanicked), 0) << "twice in a tick is once";
+}
+
+TEST(PanicButton, AButtonThatIsLetGoDoesNothing) {
+  const SceneFile file(kPanicScene);
+  Show show(file.path());
+  show.send("/transport/panic", 1);
+  show.ticks(1);
+  show.send("/transport/panic", 0);
+  show.ticks(1);
+  EXPECT_EQ(show.read(kPanicked), 1);
+}
+
+TEST(PanicButton, MorphsStayWhereTheyAreAndHandsLetGo) {
+  const SceneFile file(kPanicScene);
+  Show show(file.path());
+  show.send("/preset/store", "calm");
+  show.send("/physics/sim/gravity", 0, 0, -8);
+  show.ticks(1);
+  show.send("/preset/recall", "calm", 1, "linear");
+  show.send("/physics/part/hold", "ball", "ball", 0, 0, 0, 9, 9, 9);
+  show.ticks(30);
+  show.send("/transport/panic");
+  show.ticks(1);
+  const double there = show.read("/physics/sim/gravity", 2);
+  EXPECT_LT(there, -1);
+  show.ticks(60);
+  EXPECT_EQ(show.read("/physics/sim/gravity", 2), there);
+  EXPECT_EQ(show.read("/preset/progress"), 1);
+}
+
+TEST(PanicButton, AResetAndASavedSceneEndIt) {
+  Edited edited(kPanicScene);
+  edited.show().send("/transport/panic");
+  edited.show().ticks(5);
+  EXPECT_EQ(edited.show().read(kPanicked), 1);
+  edited.save(edited.text + "\n-- mended\n");
+  EXPECT_EQ(edited.show().read(kPanicked), 0);
+  edited.show().send("/transport/panic");
+  edited.show().ticks(5);
+  edited.show().send("/transport/reset");
+  edited.show().ticks(1);
+  EXPECT_EQ(edited.show().read(kPanicked), 0);
+  const double before = edited.show().read(kBallSpeed, 1);
+  edited.show().ticks(1);
+  EXPECT_GT(edited.show().read(kBallSpeed, 1), before);
+}
+
+TEST(PanicButton, ItIsNoEditAndNoHandRemembersIt) {
+  const SceneFile file(kPanicScene);
+  Show show(file.path());
+  show.send("/physics/sim/gravity", 0, 0, -1);
+  show.ticks(1);
+  show.send("/transport/panic");
+  show.ticks(1);
+  show.send("/edit/undo");
+  show.ticks(1);
+  EXPECT_EQ(show.read("/physics/sim/gravity", 2), 0) << "the edit before it";
+  EXPECT_EQ(show.read(kPanicked), 1);
+}
+
+TEST(PanicButton, ATakeWithPanicsIsReplayedToItsHash) {
+  const ShowFolder folder;
+  folder.write("scripts/scene.lua", kPanicScene);
+  const std::string take = folder.path("panic.take");
+  EngineOptions options = fast_options(folder.path("scripts/scene.lua"));
+  options.record = take;
+  std::uint64_t hash = 0;
+  {
+    Show show(options);
+    for (int i = 0; i < 6; i++) {
+      show.ticks(20 + 3 * i);
+      show.send(i % 2 == 0 ? "/transport/panic" : "/panic");
+      show.send("/push");
+    }
+    show.ticks(10);
+    hash = show.engine.state_hash();
+    show.engine.end_take();
+    show.engine.finish_saving();
+  }
+  const Replayed again = replay_take(take);
+  EXPECT_EQ(again.error, "");
+  EXPECT_FALSE(again.verdict.parted.has_value());
+  EXPECT_EQ(again.hash, hash);
+}
+
+}  // namespace
+}  // namespace limber::engine_test
