@@ -94,8 +94,8 @@ Message message_of(const std::vector<std::string>& words) {
 }
 
 TEST(DocsOsc, EveryExampleOfThePagesIsTaken) {
-  for (const auto& [page_name, least] :
-       {std::pair("osc.md", 25u), std::pair("presets.md", 12u), std::pair("takes.md", 4u), std::pair("recovery.md", 2u)}) {
+  for (const auto& [page_name, least] : {std::pair("osc.md", 25u), std::pair("presets.md", 12u),
+                                         std::pair("takes.md", 4u), std::pair("recovery.md", 2u)}) {
     Desk desk;
     std::istringstream page(text_of(page_name));
     std::size_t sent = 0;
