@@ -44,6 +44,8 @@ class Dispatch {
   }
   /// What hands hold in the picture pulls; before each step.
   void pull_grips() { grips_.pull(world_); }
+  /// What hands hold, for a key state.
+  Grips& grips() { return grips_; }
   /// What the last message set.
   struct Write {
     Place place;

@@ -112,6 +112,7 @@ class World {
   PartLoads& loads() { return loads_; }
   PartSolids& solids() { return solids_; }
   IslandWorld& bullet() { return *bullet_; }
+  BulletMemory& bullet_memory() { return bullet_memory_; }
   Contacts& contact_log() { return contacts_; }
   /// What takes a guarded call of a script back.
   WorldUndo& undo() { return undo_; }
@@ -119,6 +120,7 @@ class World {
  private:
   friend class Body;
   friend class WorldUndo;
+  friend class WorldKey;
   void effect_gravity();
   void effect_solver();
   void settle_healed();
@@ -129,6 +131,7 @@ class World {
 
   Store& store_;
   NodeId id_, body_group_, shape_group_;
+  BulletMemory bullet_memory_;
   std::unique_ptr<IslandWorld> bullet_;
   PartLoads loads_;
   PartSolids solids_;
