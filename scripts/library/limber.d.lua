@@ -465,6 +465,7 @@ function shape_:add_child(child, position, rotation) end
 ---@field seed integer # 0 .. 9007199254740992. What every random draw derives from: a behaviour's at once, a scene's from the next start.
 ---@field paused boolean # Time stands still; commands and OSC are still answered.
 ---@field speed number # × real time, 0.01 .. 100. How fast simulated time runs when it is paced.
+---@field history number # s, 0 .. 30. Of the past that is kept for /transport/rewind; 0: nothing.
 ---@field time number # read-only, s. Simulated time.
 ---@field tick integer # read-only. Ticks since the start.
 ---@field panicked boolean # read-only. A panic holds: everything comes to rest.

@@ -10,6 +10,7 @@
 
 #include "app/bench_arms.h"
 #include "app/bench_flock.h"
+#include "app/bench_history.h"
 #include "app/bench_lua.h"
 #include "app/bench_osc.h"
 #include "app/bench_panel.h"
@@ -118,6 +119,7 @@ const std::vector<BenchScene>& bench_scenes() {
        &bench_reload},
       {"preset", "presets of every property of 1000 arms: stored, recalled, glided to", &bench_preset},
       {"take", "16 arms and 1000 messages a second: what a take costs, and its replay", &bench_take},
+      {"history", "1, 100 and 1000 arms: key states, and going back", &bench_history},
       {"osc-in", "messages a second from a socket into rows; a burst of 10 000", &bench_osc_in},
       {"osc-latency", "from message to answer: /ping, and a value in force", &bench_osc_latency},
       {"osc-out", "frames of 1000 bodies in three streams", &bench_osc_out},

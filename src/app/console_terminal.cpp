@@ -61,7 +61,7 @@ class Terminal {
   ConsoleSession session_;
   ConsoleHistory kept_{ConsoleHistory::default_file()};
   EditLine* edit_ = nullptr;
-  History* history_ = nullptr;
+  ::History* history_ = nullptr;
   std::string pending_;  // lines of a chunk that is not whole yet
   bool cancelled_ = false;
   std::mbstate_t bytes_{};  // of a character that has come in part

@@ -2,6 +2,7 @@
 #include "app/signals.h"
 
 #include <ctime>
+#include <initializer_list>
 
 namespace limber {
 

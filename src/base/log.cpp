@@ -22,6 +22,8 @@ struct Log {
   bool to_stderr = true;
 };
 
+thread_local int silences = 0;
+
 Log& the_log() {
   static Log log;
   return log;
@@ -29,7 +31,11 @@ Log& the_log() {
 
 }  // namespace
 
+LogSilence::LogSilence() { silences++; }
+LogSilence::~LogSilence() { silences--; }
+
 void log_line(LogLevel level, std::string_view text) {
+  if (silences > 0) return;
   const std::string shown = printable(text);
   Log& log = the_log();
   const std::scoped_lock lock(log.mutex);

@@ -42,6 +42,15 @@ inline constexpr std::string_view kMended = ": mended";
 /// Silences stderr (the ring still hears): for tests and `--quiet`. [any]
 void log_to_stderr(bool on);
 
+/// While one lives, this thread says nothing.
+class LogSilence {
+ public:
+  LogSilence();
+  ~LogSilence();
+  LogSilence(const LogSilence&) = delete;
+  LogSilence& operator=(const LogSilence&) = delete;
+};
+
 template <class... A>
 void log_info(fmt::format_string<A...> f, A&&... a) {
   log_line(LogLevel::info, fmt::format(f, std::forward<A>(a)...));

@@ -1,6 +1,7 @@
 // random_force: pushes each part in a direction and as hard as is drawn for it, anew from time to time.
 #include <vector>
 
+#include "base/key_bytes.h"
 #include "sim/behavior.h"
 #include "sim/behavior_rows.h"
 #include "sim/part.h"
@@ -15,6 +16,7 @@ class RandomForce final : public Behavior {
   enum Parameter : std::uint32_t { min_dir, max_dir, min_amp, max_amp, rand_interval, app_interval };
 
   void start() override { drawn_.assign(parts().size(), Vec3(0)); }
+  void pass_memory(KeyBytes& key) override { key.pass(drawn_); }
 
   void step(double) override {
     if (due(rand_interval)) draw();

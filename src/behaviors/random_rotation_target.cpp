@@ -1,6 +1,7 @@
 // random_rotation_target: leads each servo and spring towards angles that are drawn for it, anew from time to time.
 #include <vector>
 
+#include "base/key_bytes.h"
 #include "sim/behavior.h"
 #include "sim/behavior_rows.h"
 #include "sim/motor.h"
@@ -15,6 +16,7 @@ class RandomRotationTarget final : public Behavior {
   enum Parameter : std::uint32_t { min_target, max_target, speed, rand_interval, app_interval };
 
   void start() override { drawn_.assign(motors().size(), Vec3(0)); }
+  void pass_memory(KeyBytes& key) override { key.pass(drawn_); }
 
   void step(double) override {
     if (due(rand_interval)) {

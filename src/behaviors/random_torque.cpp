@@ -1,6 +1,7 @@
 // random_torque: turns each part by a torque that is drawn for it, anew from time to time.
 #include <vector>
 
+#include "base/key_bytes.h"
 #include "sim/behavior.h"
 #include "sim/behavior_rows.h"
 #include "sim/part.h"
@@ -15,6 +16,7 @@ class RandomTorque final : public Behavior {
   enum Parameter : std::uint32_t { min_torque, max_torque, scale, rand_interval, app_interval };
 
   void start() override { drawn_.assign(parts().size(), Vec3(0)); }
+  void pass_memory(KeyBytes& key) override { key.pass(drawn_); }
 
   void step(double) override {
     if (due(rand_interval)) {

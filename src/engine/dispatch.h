@@ -46,6 +46,8 @@ class Dispatch {
   void pull_grips() { grips_.pull(world_); }
   /// They let go of everything.
   void let_go() { grips_.clear(); }
+  /// What hands hold, for a key state.
+  Grips& grips() { return grips_; }
   /// What the last message set.
   struct Write {
     Place place;

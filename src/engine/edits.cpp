@@ -41,6 +41,7 @@ void Edits::begin(const Origin& who, const World& world) {
 void Edits::heard(const Store& store, NodeId id, const Row& row, bool later) {
   // what comes with a thing that was made in this call goes with the thing
   if (quiet_ || row.kind != RowKind::property || store.born(id) > structure_) return;
+  version_++;
   if (now_ == nullptr) now_ = &open_for(id, row);
   Step& step = *now_->step;
   hand_.note_in(&step.hand);
@@ -150,6 +151,7 @@ void Edits::exchange(Step& step, Store& store, std::size_t& changed, std::size_t
 }
 
 Result<void> Edits::exchange(Steps& from, Steps& to, World& world, const char* what) {
+  version_++;
   settle(world.store());
   for (std::size_t i = from.size(); i > 0; i--) {
     Step& step = *from[i - 1];
@@ -225,6 +227,44 @@ void Edits::clear() {
   values_ = 0;
   undo_text_.clear();
   redo_text_.clear();
+  version_++;
+}
+
+std::shared_ptr<const Edits::Memory> Edits::memory() const {
+  auto memory = std::make_shared<Memory>();
+  for (const auto& step : done_) memory->done_.push_back(*step);
+  for (const auto& step : undone_) memory->undone_.push_back(*step);
+  for (const Open& open : open_) {
+    const auto at = std::find_if(done_.begin(), done_.end(), [&](const auto& step) { return step.get() == open.step; });
+    std::optional<Memory::Going>& going = memory->open_.emplace_back();
+    if (at != done_.end()) going = {static_cast<std::size_t>(at - done_.begin()), open.number, open.used};
+  }
+  memory->uses_ = uses_;
+  memory->pass_ = pass_;
+  memory->values_ = values_;
+  memory->undo_text_ = undo_text_;
+  memory->redo_text_ = redo_text_;
+  return memory;
+}
+
+void Edits::bring_back(const Memory& memory) {
+  clear();
+  for (const Step& step : memory.done_) done_.push_back(std::make_unique<Step>(step));
+  for (const Step& step : memory.undone_) undone_.push_back(std::make_unique<Step>(step));
+  pass_ = memory.pass_;
+  values_ = memory.values_;
+  undo_text_ = memory.undo_text_;
+  redo_text_ = memory.redo_text_;
+  uses_ = memory.uses_;
+  for (std::size_t i = 0; i < memory.open_.size(); i++) {
+    Open& open = open_[i];
+    open.rows.clear();
+    if (!memory.open_[i]) continue;
+    open.step = done_[memory.open_[i]->step].get();
+    open.number = memory.open_[i]->number;
+    open.used = memory.open_[i]->used;
+    for (const Edit& edit : open.step->edits) open.take(edit.id, *edit.row);
+  }
 }
 
 }  // namespace limber

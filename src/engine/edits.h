@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <deque>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -78,6 +79,30 @@ class Edits {
   };
   using Steps = std::deque<std::unique_ptr<Step>>;
 
+ public:
+  /// All of it between two ticks, by itself.
+  class Memory {
+    friend class Edits;
+    struct Going {
+      std::size_t step = 0;  // among `done`
+      std::uint64_t number = 0, used = 0;
+    };
+    std::vector<Step> done_, undone_;
+    std::vector<std::optional<Going>> open_;
+    std::uint64_t uses_ = 0, pass_ = 0;
+    std::size_t values_ = 0;
+    std::string undo_text_, redo_text_;
+
+   public:
+    /// About so many bytes.
+    std::size_t size() const { return values_ * 2 * sizeof(double) + (done_.size() + undone_.size()) * sizeof(Step); }
+  };
+  std::shared_ptr<const Memory> memory() const;
+  void bring_back(const Memory& memory);
+  /// Another number whenever memory() may be something else.
+  std::uint64_t version() const { return version_; }
+
+ private:
   Open& open_for(NodeId id, const Row& row);
   Open& open_new();
   void settle(const Store& store);
@@ -103,6 +128,7 @@ class Edits {
   Open* now_ = nullptr;
   bool quiet_ = false;  // it undoes itself
   bool told_ = true;
+  std::uint64_t version_ = 0;
   std::string undo_text_, redo_text_;
 };
 

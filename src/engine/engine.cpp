@@ -130,9 +130,10 @@ void Engine::keep_state(Stage& fresh, std::string_view name) const {
 }
 
 std::unique_ptr<Stage> Engine::take_stage(std::unique_ptr<Stage> fresh) {
-  for (const char* state : {"paused", "speed"}) keep_state(*fresh, state);
+  for (const char* state : {"paused", "speed", "history"}) keep_state(*fresh, state);
   faults_ += stage_->world.health_events();
   std::swap(stage_, fresh);
+  history_.begin_anew("the scene has begun there");
   edits_.follow(fresh->store, stage_->store);
   if (stage_->scene != nullptr) stage_->scene->count_calls(calls_);
   images_.forget_store();
@@ -242,27 +243,7 @@ void Engine::pass(bool may_step) {
 
   Stage& stage = *stage_;
   const bool running = may_step && (!stage.transport.paused() || stage.transport.take_step());
-  if (running) presets_.advance(stage.world);
-  call_handlers();
-  if (running && stage.scene != nullptr && !stage.world.panic().on()) stage.scene->tick(stage.world.timestep());
-  carry_out_wishes();
-  if (stage.world.take_panic_request()) press_panic();
-  edits_.end(stage.store);
-  notes_.tell(stage.store);
-  times_.scripts = watch.lap();
-
-  if (running) {
-    stage.dispatch.pull_grips();
-    stage.world.step();
-    const TickTimes& physics = stage.world.times();
-    times_.behaviors = physics.behaviors;
-    times_.effects = physics.effects;
-    times_.physics = physics.physics;
-    times_.readouts = physics.readouts;
-    send_contacts();
-  } else {
-    stage.world.settle();
-  }
+  play(running);
   watch.lap();
 
   if (take_wanted_) {
@@ -279,13 +260,37 @@ void Engine::pass(bool may_step) {
   presets_.prepare(stage_->world);
   if (recovery_ != nullptr && recovery_->asks()) give_recovery();
   if (stage_->scene != nullptr) stage_->scene->collect_garbage();
+  end_pass(running);
   times_.collector = watch.lap();
+}
+
+// what the tick is made of once its commands are done
+void Engine::play(bool running) {
+  Stage& stage = *stage_;
+  Stopwatch watch;
+  if (running) presets_.advance(stage.world);
+  call_handlers();
+  if (running && stage.scene != nullptr && !stage.world.panic().on()) stage.scene->tick(stage.world.timestep());
+  carry_out_wishes();
+  if (stage.world.take_panic_request()) press_panic();
+  edits_.end(stage.store);
+  if (!again_) notes_.tell(stage.store);
+  times_.scripts = watch.lap();
+  if (!running) return stage.world.settle();
+  stage.dispatch.pull_grips();
+  stage.world.step();
+  const TickTimes& physics = stage.world.times();
+  times_.behaviors = physics.behaviors;
+  times_.effects = physics.effects;
+  times_.physics = physics.physics;
+  times_.readouts = physics.readouts;
+  send_contacts();
 }
 
 void Engine::publish() {
   stage_->counters.tell();
   stage_->preset_node.tell();
-  stage_->transport.tell(clock_.speed_reached());
+  tell_transport();
   stage_->publisher.publish(stage_->transport.paused(), clock_.speed_reached(), times_);
 }
 
@@ -297,6 +302,7 @@ void Engine::make_image(std::uint64_t asks) {
 
 void Engine::drain() {
   stage_->dispatch.begin_tick();
+  (void)stage_->transport.take_back();  // of the command line
   Hands hands(stage_->world, presets_, edits_, notes_);
   if (replays()) return replay_messages(hands);
   bool taken = false;
@@ -304,7 +310,10 @@ void Engine::drain() {
     if (next_command_ < commands_.size()) {
       Command& command = commands_[next_command_++];
       hands.begin(command.origin);
-      for (Message& message : command.messages) work -= execute(message, command.origin);
+      for (Message& message : command.messages) {
+        work -= execute(message, command.origin);
+        if (std::exchange(went_back_, false)) hands.begin(command.origin);
+      }
       if (command.evaluate != nullptr) evaluate(*command.evaluate, command.origin);
       continue;
     }
@@ -324,7 +333,10 @@ void Engine::evaluate(const Evaluate& wish, const Origin& origin) {
     said.text = fmt::format("a text for the scene has up to {} bytes, this one {}", kMostEvaluated, wish.text.size());
   } else if (stage_->scene != nullptr) {
     Scene& scene = *stage_->scene;
-    if (recorder_ != nullptr && wish.wish == Evaluate::Wish::run) recorder_->evaluation(wish.text, origin);
+    if (wish.wish == Evaluate::Wish::run) {
+      if (recorder_ != nullptr) recorder_->evaluation(wish.text, origin);
+      history_.note({wish.text, {}}, origin, true);
+    }
     said = wish.wish == Evaluate::Wish::run ? scene.evaluate(wish.text) : scene.complete(wish.text);
   }
   said.log_before = before;
@@ -333,25 +345,32 @@ void Engine::evaluate(const Evaluate& wish, const Origin& origin) {
 }
 
 int Engine::execute(Message& message, const Origin& origin) {
-  if (recorder_ != nullptr) recorder_->message(message, origin);
   Outcome outcome = stage_->dispatch.execute(message);
-  if (outcome.kind == Outcome::Kind::takes) outcome = ask_take(message);
-  if (outcome.kind == Outcome::Kind::scenes && !link_.ask_scenes) outcome.kind = Outcome::Kind::refused;
-  if (outcome.clamped != nullptr) {
+  const std::optional<Transport::Back> back = stage_->transport.take_back();
+  if (back && !again_) {
+    outcome = go_back(*back, origin);
+    went_back_ = true;
+  } else if (!again_) {
+    if (recorder_ != nullptr) recorder_->message(message, origin);
+    history_.note(message, origin);
+  }
+  if (outcome.kind == Outcome::Kind::takes && !again_) outcome = ask_take(message);
+  if (outcome.kind == Outcome::Kind::scenes && (!link_.ask_scenes || again_)) outcome.kind = Outcome::Kind::refused;
+  if (outcome.clamped != nullptr && !again_) {
     link_.counters.clamped.fetch_add(1, std::memory_order_relaxed);
     say_clamped(message, *outcome.clamped);
   }
   if (outcome.kept) hand_.remember(message);
-  if (origin.follows && outcome.kind == Outcome::Kind::applied) {
+  if (origin.follows && !again_ && outcome.kind == Outcome::Kind::applied) {
     for (const Dispatch::Write& write : stage_->dispatch.written())
       images_.note(stage_->store, origin, write.place, write.place.row == outcome.clamped);
   }
-  if (!outcome.said.empty()) {
+  if (!outcome.said.empty() && !again_) {
     say_left_out(outcome.said);
     refuse(message.address, origin, outcome.said);
   }
   for (Message& answer : outcome.answers) push_out({Outgoing::To::sender, origin, std::move(answer)});
-  if (outcome.kind == Outcome::Kind::refused) {
+  if (outcome.kind == Outcome::Kind::refused && !again_) {
     link_.counters.refused.fetch_add(1, std::memory_order_relaxed);
     faults_++;
     refuse(message.address, origin, outcome.error);
@@ -363,9 +382,10 @@ int Engine::execute(Message& message, const Origin& origin) {
   const int work =
       1 + static_cast<int>(stage_->dispatch.written().size()) + (applied ? 0 : kTextWork) + (listens ? kHeardWork : 0);
   // the scene's handlers hear it after every message of the tick took effect
+  if (back) return work;
   if (listens) {
     heard_.push_back({std::move(message), origin, unknown, std::move(outcome.error)});
-  } else if (unknown) {
+  } else if (unknown && !again_) {
     link_.counters.unknown.fetch_add(1, std::memory_order_relaxed);
     refuse(message.address, origin, outcome.error);
   }
@@ -377,7 +397,7 @@ void Engine::call_handlers() {
   for (Heard& heard : heard_) {
     hands.begin(heard.origin);
     const bool handled = stage_->scene->message(heard.message, heard.origin);
-    if (handled || !heard.unknown) continue;
+    if (handled || !heard.unknown || again_) continue;
     link_.counters.unknown.fetch_add(1, std::memory_order_relaxed);
     refuse(heard.message.address, heard.origin, heard.error);
   }
@@ -385,98 +405,11 @@ void Engine::call_handlers() {
   answers_taken_ = false;
 }
 
-void Engine::refuse(std::string_view address, const Origin& origin, std::string_view error) {
-  push_out({Outgoing::To::error, origin, error_message(address, error)});
-}
-
-void Engine::say_clamped(const Message& message, const Row& row) {
-  if (std::find(said_clamped_.begin(), said_clamped_.end(), &row) != said_clamped_.end()) return;
-  said_clamped_.push_back(&row);
-  log_warning("{}: a value outside {} was brought into this range (said once for {})", printable(message.address),
-              range_text(row), row.name);
-}
-
-// a slider on a preset would fill the log
-void Engine::say_left_out(const std::string& text) {
-  constexpr std::size_t kLately = 64;
-  if (std::find(said_left_out_.begin(), said_left_out_.end(), text) != said_left_out_.end()) return;
-  if (said_left_out_.size() >= kLately) said_left_out_.erase(said_left_out_.begin());
-  said_left_out_.push_back(text);
-  log_warning("{} (said once)", text);
-}
-
-void Engine::send_contacts() {
-  const Store& store = stage_->store;
-  for (const ContactEvent& contact : stage_->world.contacts()) {
-    if (!store.alive(contact.part) || !store.alive(contact.other)) continue;
-    const auto* part = static_cast<const Part*>(store.thing(contact.part));
-    const auto* other = static_cast<const Part*>(store.thing(contact.other));
-    push_out({Outgoing::To::event,
-              {},
-              {"/physics/contact",
-               {Arg::of(part->body().name()), Arg::of(part->name()), Arg::of(other->body().name()),
-                Arg::of(other->name()), Arg::of(contact.impulse), Arg::of(contact.position.x),
-                Arg::of(contact.position.y), Arg::of(contact.position.z)}}});
-  }
-}
-
-void Engine::push_out(Outgoing out) {
-  const bool answer = out.to == Outgoing::To::sender || out.to == Outgoing::To::error;
-  if (answer && answers_taken_) return;
-  link_.push_out(std::move(out));
-}
-
-void Engine::send_transport() {
-  was_paused_ = stage_->transport.paused();
-  push_out({Outgoing::To::event,
-            {},
-            {"/transport/state",
-             {Arg::of(was_paused_), Arg::of(static_cast<double>(stage_->world.tick())), Arg::of(stage_->world.time()),
-              Arg::of(clock_.speed_reached())}}});
-}
-
 std::uint64_t Engine::state_hash() const {
   const std::uint64_t hash = stage_->world.state_hash();
   return stage_->scene == nullptr ? hash : stage_->scene->state_hash(hash);
 }
 
-void Engine::send(Message message) { push_out({Outgoing::To::targets, {}, std::move(message)}); }
-void Engine::reply(const Origin& to, Message message) { push_out({Outgoing::To::sender, to, std::move(message)}); }
-void Engine::send_direct(const Origin& to, Message message) {
-  push_out({Outgoing::To::direct, to, std::move(message)});
-}
-
-void Engine::plan_osc(const OscPlan& plan) {
-  const std::shared_ptr<OscPlan> planned = link_.osc_plan.spare();
-  *planned = plan;
-  link_.osc_plan.publish(planned);
-  link_.wake_network();
-}
-
-void Engine::print(std::string_view text) {
-  log_line(LogLevel::print, text);
-  if (options_.print) {
-    ScriptHost::print(text);
-  } else {
-    fmt::print(stderr, "{}\n", text);
-  }
-}
-
 void Engine::ask_reset() { stage_->world.ask_reset(); }
-
-void Engine::script_error(std::string_view file, int line, std::string_view text) {
-  if (text.empty()) {
-    push_out({Outgoing::To::event, {}, {"/script/ok", {Arg::of(file)}}});
-    log_info("{}{}", file, kMended);
-    return;
-  }
-  faults_++;
-  reload_.faulty(file);
-  log_error("{}", text);
-  push_out({Outgoing::To::event,
-            {},
-            {"/script/error",
-             {Arg::of(file), Arg::of(static_cast<double>(line)), Arg::of(shortened(text, kMostFaultText))}}});
-}
 
 }  // namespace limber

@@ -11,9 +11,11 @@
 #include <string>
 #include <vector>
 
+#include "base/log.h"
 #include "engine/clock.h"
 #include "engine/hand.h"
 #include "engine/hands.h"
+#include "engine/history.h"
 #include "engine/image_maker.h"
 #include "engine/link.h"
 #include "engine/presets.h"
@@ -84,6 +86,7 @@ class Engine : private ScriptHost {
   World& world() { return stage_->world; }
   Store& store() { return stage_->store; }
   const PhaseTimes& times() const { return times_; }
+  const History& history() const { return history_; }
   const Presets& presets() const { return presets_; }
   /// Waits until what presets have to write is on the disk. [any but sim]
   void finish_saving();
@@ -94,6 +97,10 @@ class Engine : private ScriptHost {
   /// Whether a take is replayed, and what came of it so far.
   bool replays() const { return player_ != nullptr; }
   TakeVerdict verdict() const { return player_->verdict(); }
+  /// Everything is as it was at the newest key state before that tick, and what came since never was; presets stay.
+  /// Between two passes, or where messages are carried out. A take is not told. False: there is no such state, nothing
+  /// is changed. [sim]
+  bool return_before(std::uint64_t tick);
   /// Nothing more comes of it. [sim]
   bool replay_over() const { return player_->over(); }
   /// World, scene and generators. [sim]
@@ -116,6 +123,13 @@ class Engine : private ScriptHost {
 
   /// A tick; or, when `may_step` is false, only what happens while time stands still.
   void pass(bool may_step);
+  void play(bool running);
+  void end_pass(bool running);
+  void tell_transport();
+  Outcome go_back(const Transport::Back& back, const Origin& origin);
+  void do_again_until(const PastGoal& goal);
+  void begin_again(bool on);
+  void do_again(PastPass& pass);
   bool reset();
   void press_panic();
   Result<void> start_show();
@@ -181,6 +195,12 @@ class Engine : private ScriptHost {
   Presets presets_{hand_};
   Edits edits_{hand_};
   ChangeNotes notes_{link_.changes};
+  ChangeLog unread_;
+  ChangeNotes quiet_notes_{unread_};
+  History history_{hand_, edits_, presets_};
+  bool went_back_ = false;  // with the last message
+  bool again_ = false;      // what was done once is done again
+  std::optional<LogSilence> silence_;
   std::unique_ptr<Stage> stage_;
   std::uint64_t scene_seed_ = 0;  // as the scene's run left it
   Reload reload_;
@@ -198,6 +218,7 @@ class Engine : private ScriptHost {
   std::shared_ptr<const Preset> recovered_;   // what the show begins with
   std::string recovered_when_;                // empty: of a take
   std::uint64_t given_version_ = 0;           // of the store, when values were given last
+  std::uint64_t panic_tick_ = 0;               // when the panic that holds began
   std::string given_scene_;                   // the scene then
   Clock clock_;
   PhaseTimes times_;

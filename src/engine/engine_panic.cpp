@@ -11,12 +11,14 @@ void Engine::press_panic() {
   Panic& panic = stage_->world.panic();
   if (panic.on()) {
     panic.end();
-    log_info("the panic is over");
+    const bool back = return_before(panic_tick_);
+    log_info("the panic is over{}", back ? "; the show goes on from the newest good moment before it" : "");
     return;
   }
   presets_.stop();
   stage_->dispatch.let_go();
   panic.begin();
+  panic_tick_ = stage_->world.tick();
   log_warning(
       "panic: behaviours, forces and the scene's callbacks stop, motors are {}; /transport/panic again ends it, "
       "/transport/reset begins anew",

@@ -47,6 +47,7 @@ void Engine::carry_out_wishes() {
   hands.begin({Hand::script});
   for (std::size_t i = 0; i < wishes_.size(); i++) {
     const Outcome outcome = stage_->dispatch.execute(wishes_[i]);
+    if (again_) continue;
     if (outcome.kind == Outcome::Kind::refused) {
       faults_++;
       log_error("{} of a script: {}", wishes_[i].address, outcome.error);

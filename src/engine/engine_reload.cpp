@@ -58,6 +58,7 @@ Reload::End Engine::take(Draft& draft) {
     return reload_.take(draft, *stage_);
   }();
   if (end != Reload::End::applied) return end;
+  history_.begin_anew("the scene was run anew there");
   presets_.scene_says(reload_.script());
   static const Row& seed = World::table().at("seed");
   if ((draft.difference().world >> seed.index & 1u) != 0) scene_seed_ = stage_->world.seed();

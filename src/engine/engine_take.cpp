@@ -46,10 +46,6 @@ ScriptLimits no_limits() {
   return limits;
 }
 
-double world_row(const Stage& stage, const char* name) {
-  return std::as_const(stage.store).values(stage.world.id(), World::table().at(name))[0];
-}
-
 }  // namespace
 
 std::function<void(const std::string&)> Engine::say_take_failed() {
@@ -71,8 +67,8 @@ TakeBegin Engine::take_begin(bool reset) const {
   if (!reset) return begin;
   begin.world_seed = stage_->world.seed();
   begin.scene_seed = scene_seed_;
-  begin.paused = world_row(*stage_, "paused") != 0;
-  begin.speed = world_row(*stage_, "speed");
+  begin.paused = stage_->world_value("paused") != 0;
+  begin.speed = stage_->world_value("speed");
   begin.preset_file = presets_.file();
   begin.presets = presets_.list();
   for (const HandStep& step : hand_.in_order()) {

@@ -17,6 +17,7 @@ bool covers(const Blend& first, const Blend& second) {
 }  // namespace
 
 void PerformerHand::remember(const Message& message) {
+  version_++;
   key_ = message.address;
   for (const Arg& arg : message.args) {
     if (!arg.is_text()) break;
@@ -38,11 +39,13 @@ void PerformerHand::remember(const Message& message) {
 
 void PerformerHand::give_back(const std::string& address) {
   if (size() == 0) return;
+  version_++;
   if (returned_.size() >= kMostRemembered && !returned_.contains(address)) return;
   returned_[address] = ++order_;
 }
 
 void PerformerHand::recall(const Blend& blend) {
+  version_++;
   if (noted_ != nullptr && !noted_->recalls_) noted_->recalls_ = recalls_;
   std::erase_if(recalls_, [&](const Recall& r) { return covers(r.blend, blend); });
   if (recalls_.size() >= kMostRecalls) recalls_.erase(recalls_.begin());
@@ -50,6 +53,7 @@ void PerformerHand::recall(const Blend& blend) {
 }
 
 void PerformerHand::exchange(Before& before) {
+  version_++;
   for (auto& [key, value] : before.values_) {
     std::optional<Value> now;
     if (const auto known = values_.find(key); known != values_.end()) now = known->second;

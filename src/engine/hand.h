@@ -57,7 +57,15 @@ class PerformerHand {
   /// All of them, the oldest first: done again in this order they leave what the performer left.
   std::vector<HandStep> in_order() const;
   std::size_t size() const { return values_.size() + recalls_.size(); }
-  void clear() { *this = {}; }
+  void clear() { bring_back({}); }
+  /// Another number whenever it may remember something else.
+  std::uint64_t version() const { return version_; }
+  /// Remembers what that one remembers.
+  void bring_back(const PerformerHand& other) {
+    const std::uint64_t version = version_ + 1;
+    *this = other;
+    version_ = version;
+  }
 
  private:
   std::unordered_map<std::string, Value> values_;            // by address and names
@@ -67,6 +75,7 @@ class PerformerHand {
   std::uint64_t befores_ = 0;
   std::string key_;  // scratch
   std::uint64_t order_ = 0;
+  std::uint64_t version_ = 0;
 };
 
 }  // namespace limber

@@ -68,6 +68,20 @@ Presets::Book Presets::open(Book book) {
   return book;
 }
 
+void Presets::save() {
+  if (keeper_ != nullptr && !again_) keeper_->save(std::make_shared<const PresetList>(list_));
+}
+
+void Presets::bring_back(const Memory& memory) {
+  take_list(memory.list);
+  morphs_ = memory.morphs;
+}
+
+void Presets::take_list(PresetList list) {
+  list_ = std::move(list);
+  changed();
+}
+
 void Presets::changed() {
   names_.clear();
   for (const auto& preset : list_) names_ += (names_.empty() ? "" : "\n") + preset->name;
@@ -169,7 +183,7 @@ Outcome Presets::store(const Message& message, World& world) {
     *place = std::move(*taken);
   }
   changed();
-  if (keeper_ != nullptr) keeper_->save(std::make_shared<const PresetList>(list_));
+  save();
   return {};
 }
 
@@ -180,7 +194,7 @@ Outcome Presets::erase(const Message& message) {
   if (*preset == script_) return Outcome::refused("'script' is what the scene describes; it can't be deleted");
   std::erase(list_, *preset);
   changed();
-  if (keeper_ != nullptr) keeper_->save(std::make_shared<const PresetList>(list_));
+  save();
   return {};
 }
 

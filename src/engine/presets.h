@@ -82,6 +82,21 @@ class Presets {
   /// Waits until all is on the disk. [any but sim]
   void finish_saving();
 
+  /// What messages may change of it, between two ticks.
+  struct Memory {
+    PresetList list;
+    Morphs morphs;
+  };
+  void keep(Memory& memory) const {
+    memory.list = list_;
+    memory.morphs = morphs_;
+  }
+  void bring_back(const Memory& memory);
+  /// The presets are these.
+  void take_list(PresetList list);
+  /// While `on`, what was done once is done again: nothing is written to the disk.
+  void do_again(bool on) { again_ = on; }
+
   /// A hand sets the row: it leaves the morphs that move it.
   void release(NodeId id, const Row& row) { morphs_.release(id, row); }
 
@@ -100,8 +115,10 @@ class Presets {
   Result<std::shared_ptr<const PresetBinding>> bind(const Store& store, const Blend& blend);
   Error unknown(std::string_view name) const;
   void changed();
+  void save();
 
   PerformerHand& hand_;
+  bool again_ = false;
   PresetList list_;
   std::unique_ptr<PresetKeeper> keeper_;
   std::string file_;

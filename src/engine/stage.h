@@ -55,6 +55,9 @@ struct Stage {
     });
   }
 
+  /// The number of one of the world's rows.
+  double world_value(std::string_view row) const { return store.values(world.id(), World::table().at(row))[0]; }
+
   Store store;
   World world;
   Transport transport;

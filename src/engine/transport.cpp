@@ -2,12 +2,15 @@
 #include "engine/transport.h"
 
 #include <algorithm>
+#include <array>
 
 namespace limber {
 
 namespace {
 
 using namespace rows;
+
+constexpr double kMostTicks = 100000;
 
 Row counter(std::string name, std::string doc) {
   return live(readout(integer(std::move(name), 0, 0, kUnbounded, std::move(doc))));
@@ -21,11 +24,16 @@ const Table& Transport::table() {
       {
           act<&Transport::act_play>(action("play", 0, 0, "Time runs.")),
           act<&Transport::act_pause>(action("pause", 0, 0, "Time stands still.")),
-          act<&Transport::act_step>(action("step", 0, 1, "So many ticks (1), then stands still.")),
+          act<&Transport::act_step>(
+              action("step", 0, 1, "So many ticks (1), then stands still; fewer than 0: so many ticks back.")),
+          act<&Transport::act_rewind>(action("rewind", 1, 1, "So many seconds back, as far as history goes.")),
+          act<&Transport::act_rewind_ticks>(action("rewind_ticks", 1, 1, "So many ticks back.")),
           act<&Transport::act_reset>(action("reset", 0, 0, "The scene from its start, with the performer's values.")),
           act<&Transport::act_panic>(action("panic", 0, 0, Panic::kDoc)),
           live(readout(number("speed_reached", "× real time", 1, 0, kUnbounded,
                               "Simulated seconds per real second, over the last half second."))),
+          live(readout(number("rewindable", "s", 0, 0, kUnbounded, "How far back a rewind can go."))),
+          live(readout(number("history_memory", "", 0, 0, kUnbounded, "Megabytes that this takes."))),
       });
   return table;
 }
@@ -46,7 +54,13 @@ bool Transport::take_step() {
   return true;
 }
 
-void Transport::tell(double speed_reached) { world_.store().tell(id_, table().at("speed_reached"))[0] = speed_reached; }
+void Transport::tell(double speed_reached, double rewindable, double history_memory) {
+  static const Row& first = table().at("speed_reached");
+  double* const out = world_.store().tell(id_, first);  // the readouts stand in a row
+  out[0] = speed_reached;
+  out[1] = rewindable;
+  out[2] = history_memory;
+}
 
 Result<void> Transport::act_play(std::span<const double>) {
   steps_ = 0;
@@ -54,16 +68,25 @@ Result<void> Transport::act_play(std::span<const double>) {
   return {};
 }
 
-Result<void> Transport::act_pause(std::span<const double>) {
+void Transport::stand_still() {
   steps_ = 0;
   set_paused(true);
+}
+
+Result<void> Transport::act_pause(std::span<const double>) {
+  stand_still();
   return {};
 }
 
 Result<void> Transport::act_step(std::span<const double> args) {
   const double wanted = args.empty() ? 1 : args[0];
-  if (!(wanted >= 1 && wanted <= 100000)) return Error{"step takes 1 to 100000 ticks"};
-  steps_ = std::min(100000, steps_ + static_cast<int>(wanted));
+  if (wanted <= -1) {
+    Result<void> goes = act_rewind_ticks(std::array{-wanted});
+    if (goes) back_->stands = true;
+    return goes;
+  }
+  if (!(wanted >= 1 && wanted <= kMostTicks)) return Error{"step takes 1 to 100000 ticks, or -1 to -100000 back"};
+  steps_ = std::min(static_cast<int>(kMostTicks), steps_ + static_cast<int>(wanted));
   set_paused(true);
   return {};
 }
@@ -75,6 +98,18 @@ Result<void> Transport::act_reset(std::span<const double>) {
 
 Result<void> Transport::act_panic(std::span<const double>) {
   world_.ask_panic();
+  return {};
+}
+
+Result<void> Transport::act_rewind(std::span<const double> args) {
+  if (!(args[0] > 0)) return Error{"rewind takes the seconds to go back, more than 0"};
+  back_ = Back{args[0]};
+  return {};
+}
+
+Result<void> Transport::act_rewind_ticks(std::span<const double> args) {
+  if (!(args[0] >= 1 && args[0] <= kMostTicks)) return Error{"so many ticks back: 1 to 100000"};
+  back_ = Back{0, static_cast<std::uint64_t>(args[0])};
   return {};
 }
 

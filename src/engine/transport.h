@@ -1,7 +1,9 @@
-// Transport and telemetry: the nodes /transport (play, pause, step, reset, panic) and /osc (what came in and was lost).
-// [sim]
+// Transport and telemetry: the nodes /transport (play, pause, step, rewind, reset, panic) and /osc (what came in and was
+// lost). [sim]
 #pragma once
 
+#include <cstdint>
+#include <optional>
 #include <utility>
 
 #include "engine/command.h"
@@ -18,8 +20,17 @@ class Transport {
   bool paused() const;
   /// Ticks that `step` asked for and that were not taken yet; taking one counts it.
   bool take_step();
-  /// Tells `speed_reached`.
-  void tell(double speed_reached);
+  /// How far back a message asked to go since the last call, if one did.
+  struct Back {
+    double seconds = 0;
+    std::uint64_t ticks = 0;  ///< Where that is not 0, so many ticks instead.
+    bool stands = false;      ///< Time stands still there.
+  };
+  std::optional<Back> take_back() { return std::exchange(back_, std::nullopt); }
+  /// Time stands still from now on.
+  void stand_still();
+  /// Tells `speed_reached`, the seconds that can be rewound, and the megabytes that they take.
+  void tell(double speed_reached, double rewindable, double history_memory);
 
  private:
   Result<void> act_play(std::span<const double> args);
@@ -27,11 +38,14 @@ class Transport {
   Result<void> act_step(std::span<const double> args);
   Result<void> act_reset(std::span<const double> args);
   Result<void> act_panic(std::span<const double> args);
+  Result<void> act_rewind(std::span<const double> args);
+  Result<void> act_rewind_ticks(std::span<const double> args);
   void set_paused(bool paused);
 
   World& world_;
   NodeId id_;
   int steps_ = 0;
+  std::optional<Back> back_;
 };
 
 /// The counters as readouts.

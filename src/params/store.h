@@ -163,6 +163,8 @@ class Store {
   /// Counts writes to kept values and changes of structure: copies are made anew when it has changed.
   std::uint64_t kept_version() const { return kept_version_; }
   std::uint64_t structure_version() const { return structure_version_; }
+  /// Something that is no node has come or gone.
+  void note_structure() { structure_version_++; }
   /// The structure's version when the node came, or got another table.
   std::uint64_t born(NodeId id) const { return node(id).born; }
   const StoreView* view() const { return &view_; }
@@ -182,6 +184,7 @@ class Store {
   }
 
  private:
+  friend class WorldKey;
   struct Node {
     const Table* table = nullptr;
     std::string name;

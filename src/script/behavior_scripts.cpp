@@ -7,6 +7,7 @@
 
 #include <fmt/format.h>
 
+#include "base/key_bytes.h"
 #include "base/text.h"
 #include "script/context.h"
 #include "script/lua_behavior.h"
@@ -96,6 +97,8 @@ void BehaviorScripts::keep_generator(std::int32_t file) {
       },
       this, static_cast<std::size_t>(file));
 }
+
+void BehaviorScripts::pass_memory(KeyBytes& key) { key.pass_all(generators_, dropped_); }
 
 std::uint64_t BehaviorScripts::hash(std::uint64_t start) const {
   for (const FileGenerator& generator : generators_) {

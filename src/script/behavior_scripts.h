@@ -16,6 +16,7 @@
 
 namespace limber {
 
+class KeyBytes;
 struct ScriptContext;
 class Vm;
 
@@ -50,6 +51,8 @@ class BehaviorScripts : public std::enable_shared_from_this<BehaviorScripts> {
                                                       std::vector<Row> parameters);
   /// The generator that `rng` and math.random draw from in a file's functions.
   Random& generator(std::int32_t file);
+  /// A key state takes generators and what waits, and brings them back.
+  void pass_memory(KeyBytes& key);
   /// With the bits of the files' generators.
   std::uint64_t hash(std::uint64_t start) const;
 

@@ -6,6 +6,7 @@
 
 #include <lua.hpp>
 
+#include "base/key_bytes.h"
 #include "script/memory.h"
 
 namespace limber {
@@ -26,6 +27,8 @@ Collector::Collector(lua_State* state, const Memory& memory) : state_(state), me
 }
 
 void Collector::rest() { lua_gc(state_, LUA_GCSTOP, 0); }
+
+void Collector::pass_memory(KeyBytes& key) { key.pass_all(used_after_cycle_, cycles_); }
 
 void Collector::begin_run() { lua_gc(state_, LUA_GCRESTART, 0); }
 

@@ -7,6 +7,7 @@ struct lua_State;
 
 namespace limber {
 
+class KeyBytes;
 class Memory;
 
 class Collector {
@@ -22,6 +23,8 @@ class Collector {
   void after_tick();
   /// After a script was stopped for memory: whole cycles, in slices too.
   void collect_all() { cycles_ = 2; }
+  /// For a key state.
+  void pass_memory(KeyBytes& key);
 
  private:
   void rest();

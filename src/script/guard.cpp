@@ -16,6 +16,7 @@
 #include <lua.hpp>
 
 #include "base/check.h"
+#include "base/key_bytes.h"
 #include "script/call_ledger.h"
 #include "script/context.h"
 
@@ -24,6 +25,7 @@ namespace limber {
 namespace {
 
 constexpr std::int64_t kMillisecond = 1'000'000;
+constexpr double kNoEnd = 1e9;  // ms
 // calls must be noticed this soon after they begin, as a part of their budget; at most every 4 ms
 std::int64_t poll_of(const ScriptLimits& limits) {
   return std::clamp(static_cast<std::int64_t>(limits.call_ms * kMillisecond / 10), std::int64_t{200'000},
@@ -151,20 +153,25 @@ void Guard::begin(Kind kind) {
     if (context_.calls != nullptr) context_.calls->count();
     context_.begin_call();
   }
-  memory_.begin_call();
+  memory_.begin_call(again_);
   running_here = this;
-  const double budget = kind == Kind::call ? limits_.call_ms : limits_.run_ms;
+  const double budget = again_ ? kNoEnd : kind == Kind::call ? limits_.call_ms : limits_.run_ms;
   watch_.begin(static_cast<std::int64_t>(budget * kMillisecond));
+}
+
+void Guard::pass_memory(KeyBytes& key) {
+  memory_.pass(key);
+  key.pass(memory_stop_);
 }
 
 bool Guard::next_call(bool& changed) {
   if (context_.calls != nullptr && context_.calls->forbids_next()) return false;
   // from here on nobody stops the call before: what has asked until now is seen
   watch_.next();
-  if (reason_ != Reason::none || memory_.used() > memory_.cap() / 2) return false;
+  if (reason_ != Reason::none || (memory_.used() > memory_.cap() / 2 && !again_)) return false;
   if (context_.calls != nullptr) context_.calls->count();
   if (context_.next_call()) changed = true;
-  memory_.begin_call();
+  memory_.begin_call(again_);
   return true;
 }
 

@@ -17,6 +17,7 @@ struct lua_State;
 
 namespace limber {
 
+class KeyBytes;
 struct ScriptContext;
 
 /// Why a call failed, as a person reads it.
@@ -71,6 +72,10 @@ class Guard {
   /// Whether a call was stopped for memory since the last time that this was asked.
   bool take_memory_stop() { return std::exchange(memory_stop_, false); }
   const Memory& memory() const { return memory_; }
+  /// A key state takes the count of what Lua holds, and brings it back with that.
+  void pass_memory(KeyBytes& key);
+  /// While `on`, nothing is stopped but the calls that the ledger forbids: what was done once is done again.
+  void do_again(bool on) { again_ = on; }
 
  private:
   enum class Reason : std::uint8_t { none, time, memory };
@@ -99,6 +104,7 @@ class Guard {
   bool live_ = false;
   bool running_ = false;
   bool memory_stop_ = false;
+  bool again_ = false;
   // written from the signal too
   volatile bool hooked_ = false;
   volatile Reason reason_ = Reason::none;

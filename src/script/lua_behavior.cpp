@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include "base/key_bytes.h"
 #include "base/log.h"
 #include "sim/behavior_group.h"
 #include "sim/body.h"
@@ -93,6 +94,15 @@ void LuaBehavior::take_over(Behavior& before) {
       log_warning("behavior '{}/{}' begins anew: {}", body().name(), name(), kept.error());
     }
   }
+}
+
+void LuaBehavior::pass_memory(KeyBytes& key) {
+  bool inherits = inherited_.has_value();
+  key.pass_all(number_, started_, inherits);
+  if (inherits && !inherited_) inherited_.emplace();
+  if (!inherits) inherited_.reset();
+  if (inherits) key.pass_all(inherited_->state, inherited_->from);
+  if (key.bringing()) numbered_at_ = 0;
 }
 
 Result<std::string> LuaBehavior::state() const { return scripts_->state(number_); }

@@ -27,6 +27,7 @@ class LuaBehavior final : public Behavior {
   /// Takes the state of the one before it, through `migrate` when the file has changed. What can't be kept is said, and
   /// the state starts anew.
   void take_over(Behavior& before) override;
+  void pass_memory(KeyBytes& key) override;
 
   /// Its `state` as text, for another instance. The error names the key that holds what is no plain data.
   Result<std::string> state() const;

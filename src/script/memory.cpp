@@ -5,6 +5,8 @@
 
 #include <lua.hpp>
 
+#include "base/key_bytes.h"
+
 namespace limber {
 
 namespace {
@@ -36,7 +38,10 @@ void Memory::attach(lua_State* state) {
 
 void Memory::detach(lua_State* state) { lua_setallocf(state, inner_, inner_self_); }
 
-void Memory::begin_call() {
+void Memory::pass(KeyBytes& key) { key.pass(used_); }
+
+void Memory::begin_call(bool free) {
+  if (free) return end_call();
   in_call_ = true;
   alarm_ = std::max(cap_, used_ + headroom(used_, cap_));
 }

@@ -10,6 +10,8 @@ struct lua_State;
 
 namespace limber {
 
+class KeyBytes;
+
 class Memory {
  public:
   /// `cap`: bytes that scripts may hold. `full` is called inside the allocator, while a call runs.
@@ -20,11 +22,15 @@ class Memory {
   void detach(lua_State* state);
 
   /// Only what is taken between these two is watched.
-  void begin_call();
+  /// `free`: nothing is, since it was good before.
+  void begin_call(bool free = false);
   void end_call() {
     alarm_ = kNever;
     in_call_ = false;
   }
+
+  /// For a key state.
+  void pass(KeyBytes& key);
 
   std::size_t used() const { return used_; }
   std::size_t cap() const { return cap_; }

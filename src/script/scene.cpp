@@ -70,6 +70,8 @@ void Scene::collect_garbage() { vm_->collect_garbage(); }
 
 std::uint64_t Scene::state_hash(std::uint64_t start) const { return context_->hash(start); }
 
+void Scene::do_again(bool on) { vm_->guard().do_again(on); }
+
 VmMode Scene::mode() const { return vm_->mode(); }
 
 bool Scene::arm() { return vm_->arm(); }

@@ -59,6 +59,8 @@ class Scene {
   bool message(const Message& message, const Origin& origin);
   /// After each tick: about 100 µs at most, nothing while there is little to collect.
   void collect_garbage();
+  /// While `on`, what was done once is done again: nothing is stopped but what the ledger forbids. [sim]
+  void do_again(bool on);
   VmMode mode() const;
   /// Draft to live: once the other scene has gone, or was disarmed; false while it has not.
   bool arm();
@@ -90,6 +92,7 @@ class Scene {
   const std::string& show_folder() const;
 
  private:
+  friend class SceneKey;
   std::unique_ptr<ScriptContext> context_;
   std::unique_ptr<Vm> vm_;
   ScriptPlace fault_;

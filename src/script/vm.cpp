@@ -7,6 +7,7 @@
 #include <lua.hpp>
 
 #include "base/check.h"
+#include "base/key_bytes.h"
 #include "base/log.h"
 #include "base/text.h"
 #include "script/behavior_scripts.h"
@@ -64,9 +65,13 @@ struct Pieces {
   }
 };
 
+void* heap_block(void* heap, void* block, std::size_t before, std::size_t after) {
+  return static_cast<Arena*>(heap)->resize(block, before, after);
+}
+
 // with the libraries: opening that of the compiler switches it on
-lua_State* open_state() {
-  lua_State* const L = luaL_newstate();
+lua_State* open_state(Arena& heap) {
+  lua_State* const L = heap.exists() ? lua_newstate(heap_block, &heap) : luaL_newstate();
   luaL_openlibs(L);
   return L;
 }
@@ -97,7 +102,7 @@ int load_text(lua_State* L) {
 void Vm::Close::operator()(lua_State* state) const { lua_close(state); }
 
 Vm::Vm(ScriptContext& context, VmMode wanted)
-    : state_(open_state()), guard_(state_.get(), context, context.options.limits) {
+    : state_(open_state(heap_)), guard_(state_.get(), context, context.options.limits) {
   context.guard = &guard_;
   load_prelude(context);
   keep_entries();
@@ -293,6 +298,21 @@ std::string Vm::names() {
   std::string names = call(0, 1) ? std::string(text_at(L, -1)) : std::string();
   lua_settop(L, 0);
   return names;
+}
+
+void Vm::copy_heap(PageStore& pages, const PageStore::Image* before, PageStore::Image& out) {
+  luaJIT_setmode(state_.get(), 0, LUAJIT_MODE_ENGINE | LUAJIT_MODE_FLUSH);
+  heap_.copy(pages, before, out);
+}
+
+void Vm::bring_back_heap(const PageStore& pages, const PageStore::Image& image) {
+  luaJIT_setmode(state_.get(), 0, LUAJIT_MODE_ENGINE | LUAJIT_MODE_FLUSH);
+  heap_.bring_back(pages, image);
+}
+
+void Vm::pass_counts(KeyBytes& key) {
+  guard_.pass_memory(key);
+  collector_->pass_memory(key);
 }
 
 void Vm::collect_garbage() {

@@ -7,6 +7,7 @@
 #include <string>
 #include <string_view>
 
+#include "base/arena.h"
 #include "base/evaluation.h"
 #include "base/id.h"
 #include "base/message.h"
@@ -19,6 +20,7 @@ struct lua_State;
 
 namespace limber {
 
+class KeyBytes;
 struct ScriptContext;
 struct ScriptPlace;
 
@@ -74,6 +76,13 @@ class Vm {
   /// Handles have other ids now; timers go on from where they were looked at last, if they were. [sim]
   void become_live(std::optional<double> timers_at);
 
+  /// Between two ticks: all that Lua holds, in pages that are shared with an older copy, or null. Compiled code is
+  /// forgotten, since it lies elsewhere; it comes again as it is needed. [sim]
+  void copy_heap(PageStore& pages, const PageStore::Image* before, PageStore::Image& out);
+  void bring_back_heap(const PageStore& pages, const PageStore::Image& image);
+  /// What is counted of it beside the heap.
+  void pass_counts(KeyBytes& key);
+
   /// Collects for about 100 µs when there is enough to collect. The collector rests at all other times. [sim]
   void collect_garbage();
 
@@ -88,6 +97,7 @@ class Vm {
   struct Close {
     void operator()(lua_State* state) const;
   };
+  Arena heap_;
   std::unique_ptr<lua_State, Close> state_;
   Guard guard_;
   std::optional<Collector> collector_;  // once the prelude is in

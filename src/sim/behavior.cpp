@@ -83,6 +83,8 @@ void Behavior::step_group(std::span<Behavior* const> members, double dt) {
 
 void Behavior::take_over(Behavior&) {}
 
+void Behavior::pass_memory(KeyBytes&) {}
+
 const std::string& Behavior::name() const { return store().name(id_); }
 Store& Behavior::store() const { return world_->store(); }
 

@@ -18,6 +18,7 @@
 namespace limber {
 
 class BehaviorGroup;
+class KeyBytes;
 class Body;
 class Joint;
 class Motor;
@@ -61,6 +62,8 @@ class Behavior {
   /// Comes in the place of `before`, whose type was renewed: takes what should live on. Values, generator and beats
   /// have been taken already.
   virtual void take_over(Behavior& before);
+  /// What it remembers from tick to tick beside its rows, generator and beats: a key state takes it and brings it back.
+  virtual void pass_memory(KeyBytes& key);
 
   // What it is; valid from start() on. One that is removed while it steps has no body any more, and an empty name.
   NodeId id() const { return id_; }
@@ -116,6 +119,7 @@ class Behavior {
   friend class BehaviorList;
   friend class BehaviorGroup;
   friend class BehaviorUndo;
+  friend class WorldKey;
   /// When an interval fired last, counted from an anchor so that no error adds up.
   struct Beat {
     const Row* row = nullptr;

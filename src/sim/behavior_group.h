@@ -64,6 +64,7 @@ class BehaviorGroup {
   friend class Behavior;
   friend class BehaviorList;
   friend class BehaviorUndo;
+  friend class WorldKey;
   BehaviorGroup(World& world, NodeId parent, std::string name, std::shared_ptr<const BehaviorType> type,
                 GroupSetup setup);
 

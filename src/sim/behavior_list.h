@@ -76,6 +76,7 @@ class BehaviorList {
   friend class Behavior;
   friend class BehaviorGroup;
   friend class BehaviorUndo;
+  friend class WorldKey;
   /// One behaviour or one group.
   struct Entry {
     std::unique_ptr<Behavior> single;

@@ -101,6 +101,7 @@ class Body {
   friend class BehaviorList;
   friend class BehaviorUndo;
   friend class WorldUndo;
+  friend class WorldKey;
   void keep();
   void build(const std::shared_ptr<const BodyModel>& model, const BuildOptions& options);
   void build_motor(Joint& joint, const JointModel& m, bool servo);

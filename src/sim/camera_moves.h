@@ -30,6 +30,7 @@ class CameraMoves {
 
  private:
   friend class WorldUndo;
+  friend class WorldKey;
 
   using View = std::array<double, 7>;  // the rows that say where it is: position, rotation, distance
   struct Glide {

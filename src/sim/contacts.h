@@ -35,6 +35,7 @@ class Contacts {
   std::span<const ContactEvent> begun() const { return begun_; }
 
  private:
+  friend class WorldKey;
   struct Pair {
     Part* a;
     Part* b;

@@ -10,6 +10,8 @@ namespace {
 
 /// Islands are solved together until this many joints and contact pairs are in a batch; it changes no result.
 constexpr int kBatch = 16;
+/// Contact pairs in Bullet's pool.
+constexpr int kPool = 64;
 
 int island_tag(const btCollisionObject& a, const btCollisionObject& b) {
   return a.getIslandTag() >= 0 ? a.getIslandTag() : b.getIslandTag();
@@ -29,6 +31,7 @@ void zero(btAlignedObjectArray<int>& a, int size) {
 // Bullet's, but for the groups of set_apart
 class Dispatcher : public btCollisionDispatcher {
  public:
+  BT_DECLARE_ALIGNED_ALLOCATOR();
   using btCollisionDispatcher::btCollisionDispatcher;
   bool needsCollision(const btCollisionObject* a, const btCollisionObject* b) override {
     if (a->getUserIndex2() >= 0 && a->getUserIndex2() == b->getUserIndex2()) return false;
@@ -36,18 +39,27 @@ class Dispatcher : public btCollisionDispatcher {
   }
 };
 
+// Bullet's, in Bullet's memory
+class Broadphase : public btDbvtBroadphase {
+ public:
+  BT_DECLARE_ALIGNED_ALLOCATOR();
+};
+
 }  // namespace
 
-WorldParts::WorldParts(const WorldSetup& setup) {
+WorldParts::WorldParts(const WorldSetup& setup) : memory(BulletMemory::current()) {
   // shared by all worlds, and one may be made while another is stepped
   if (gDbvtMargin != to_scalar(setup.broadphase_margin)) gDbvtMargin = to_scalar(setup.broadphase_margin);
-  // Bullet's own pool of 4096 contact pairs: a larger one makes a new world slow (100 ms for 65536), and more pairs
-  // than it holds cost no measurable time (arms-1000)
-  configuration = std::make_unique<btDefaultCollisionConfiguration>();
+  // Bullet's own pools of 4096 contact pairs take 4 MB, which each key state would look through; more pairs than a
+  // pool holds cost no measurable time (arms-1000)
+  btDefaultCollisionConstructionInfo pools;
+  pools.m_defaultMaxPersistentManifoldPoolSize = pools.m_defaultMaxCollisionAlgorithmPoolSize = kPool;
+  configuration = std::make_unique<btDefaultCollisionConfiguration>(pools);
   dispatcher = std::make_unique<Dispatcher>(configuration.get());
-  broadphase = std::make_unique<btDbvtBroadphase>();
+  broadphase = std::make_unique<Broadphase>();
   // every pair is looked at in every step, so that a pair's life does not depend on how many others there are
   broadphase->m_cupdates = 100;
+  const BulletMemory::Scope heap(nullptr);
   solver = std::make_unique<IslandSolver>();
 }
 
@@ -66,6 +78,7 @@ IslandWorld::~IslandWorld() = default;
 
 void IslandWorld::step(double h, int substeps) {
   if (!(h > 0) || substeps <= 0) return;
+  const BulletMemory::Scope scope(memory);
   const btScalar step_length = to_scalar(h);
   saveKinematicState(step_length * static_cast<btScalar>(substeps));
   applyGravity();
@@ -79,6 +92,7 @@ void IslandWorld::step(double h, int substeps) {
 }
 
 void IslandWorld::addConstraint(btTypedConstraint* constraint, bool disable_collisions) {
+  const BulletMemory::Scope scope(memory);
   btDiscreteDynamicsWorld::addConstraint(constraint, disable_collisions);
   btBroadphaseProxy* a = constraint->getRigidBodyA().getBroadphaseHandle();
   btBroadphaseProxy* b = constraint->getRigidBodyB().getBroadphaseHandle();
@@ -86,6 +100,16 @@ void IslandWorld::addConstraint(btTypedConstraint* constraint, bool disable_coll
   // contacts that the two have already would be solved for ever
   btOverlappingPairCache* pairs = getPairCache();
   if (btBroadphasePair* pair = pairs->findPair(a, b)) pairs->cleanOverlappingPair(*pair, getDispatcher());
+}
+
+void IslandWorld::addRigidBody(btRigidBody* body) {
+  const BulletMemory::Scope scope(memory);
+  btDiscreteDynamicsWorld::addRigidBody(body);
+}
+
+void IslandWorld::addRigidBody(btRigidBody* body, int group, int mask) {
+  const BulletMemory::Scope scope(memory);
+  btDiscreteDynamicsWorld::addRigidBody(body, group, mask);
 }
 
 void IslandWorld::set_apart(btCollisionObject& object, int group) {
@@ -184,6 +208,7 @@ void IslandWorld::sort_contacts() {
 }
 
 void IslandWorld::solve_islands(const btContactSolverInfo& info) {
+  const BulletMemory::Scope heap(nullptr);  // the solver's rows
   const auto range = [](auto& items, int first) { return first < items.size() ? &items[first] : nullptr; };
   int first = 0;
   for (int last = 1; last <= island_count_; ++last) {

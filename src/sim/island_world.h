@@ -5,6 +5,7 @@
 #include <memory>
 
 #include "sim/bullet.h"
+#include "sim/bullet_memory.h"
 #include "sim/joint_block.h"
 #include "sim/joint_constraint.h"
 
@@ -48,15 +49,17 @@ class IslandSolver : public btSequentialImpulseConstraintSolver {
 /// What a world is made of; a base of IslandWorld so that it outlives Bullet's part.
 struct WorldParts {
   explicit WorldParts(const WorldSetup& setup);
+  BulletMemory* memory;  ///< Of the scope that it was made in, or null.
   std::unique_ptr<btDefaultCollisionConfiguration> configuration;
   std::unique_ptr<btCollisionDispatcher> dispatcher;
   std::unique_ptr<btDbvtBroadphase> broadphase;
-  std::unique_ptr<IslandSolver> solver;
+  std::unique_ptr<IslandSolver> solver;  ///< On the heap: nothing of it outlives a step.
 };
 
 /// Joints and contacts of an island are solved in an order that depends on that island alone (joints as added,
 /// contacts by the parts' age), so an island moves the same, bit for bit, alone or among others. Bodies are the
-/// caller's, without motion states, and never sleep. [sim]
+/// caller's, without motion states, and never sleep. What it keeps from step to step lies in the memory of the
+/// BulletMemory::Scope that it was made in. [sim]
 class IslandWorld : private WorldParts, public btDiscreteDynamicsWorld {
  public:
   BT_DECLARE_ALIGNED_ALLOCATOR();
@@ -72,6 +75,8 @@ class IslandWorld : private WorldParts, public btDiscreteDynamicsWorld {
   /// colliding with each other, at once, and collide again when their last such joint is removed.
   void addConstraint(btTypedConstraint* constraint, bool disable_collisions = true) override;
   void removeConstraint(btTypedConstraint* constraint) override;
+  void addRigidBody(btRigidBody* body) override;
+  void addRigidBody(btRigidBody* body, int group, int mask) override;
 
   /// Objects of one group, >= 0, don't collide with each other from now on; -1: of none.
   void set_apart(btCollisionObject& object, int group);

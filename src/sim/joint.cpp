@@ -107,14 +107,19 @@ const Table& Joint::table() {
   return table;
 }
 
+std::unique_ptr<JointConstraint> Joint::make_constraint(Part& parent, Part& child, const JointSpec& spec) {
+  const BulletMemory::Scope scope(&parent.body().world().bullet_memory());
+  return std::make_unique<JointConstraint>(parent.rigid(), child.rigid(),
+                                           to_bt(parent.geometry()->frame.inverse() * spec.frame_in_parent),
+                                           to_bt(child.geometry()->frame.inverse() * spec.frame_in_child));
+}
+
 Joint::Joint(Body& body, NodeId group, std::string name, Part& parent, Part& child, const JointSpec& spec)
     : body_(body),
       id_(body.store().add(table(), group, std::move(name), this)),
       parent_(parent),
       child_(child),
-      constraint_(std::make_unique<JointConstraint>(parent.rigid(), child.rigid(),
-                                                    to_bt(parent.geometry()->frame.inverse() * spec.frame_in_parent),
-                                                    to_bt(child.geometry()->frame.inverse() * spec.frame_in_child))),
+      constraint_(make_constraint(parent, child, spec)),
       spec_(spec) {
   Store& store = body_.store();
   for (int axis = 0; axis < 6; axis++) {

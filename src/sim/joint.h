@@ -77,6 +77,9 @@ class Joint {
   void read_axis(double* out) const;
 
  private:
+  friend class WorldKey;
+  static std::unique_ptr<JointConstraint> make_constraint(Part& parent, Part& child, const JointSpec& spec);
+
   // what every tick needs stands first
   Body& body_;
   NodeId id_;

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cstdint>
+#include <memory>
 #include <vector>
 
 #include "base/vec.h"
@@ -200,7 +201,8 @@ class JointConstraint : public btTypedConstraint {
   int row_count_ = 0;
   int locked_rows_ = 0;
   bool bounded_row_ = false;
-  std::vector<Row> rows_;
+  // scratch of one step, so not in Bullet's memory, where a key state would have it
+  std::unique_ptr<std::vector<Row>> rows_ = std::make_unique<std::vector<Row>>();
 };
 
 }  // namespace limber

@@ -45,7 +45,7 @@ void JointConstraint::getInfo2(btConstraintInfo2* info) {
     to[2] = v.z();
   };
   for (int r = 0; r < row_count_; ++r) {
-    const Row& row = rows_[at(r)];
+    const Row& row = (*rows_)[at(r)];
     const Jacobian j = jacobian(row.axis);
     const int skip = r * info->rowskip;
     if (row.axis < 3) {
@@ -63,7 +63,7 @@ void JointConstraint::getInfo2(btConstraintInfo2* info) {
 
 void JointConstraint::take_impulses(const btSolverConstraint* rows, int count) {
   for (int r = 0; r < count && r < row_count_; ++r) {
-    const Row& row = rows_[at(r)];
+    const Row& row = (*rows_)[at(r)];
     const btScalar impulse = rows[r].m_appliedImpulse;
     // of a repair only what made the axis move: what bore a load is not taken back, or the limit would hold on to it
     if (row.kind == RowKind::repair) {
@@ -79,7 +79,7 @@ void JointConstraint::take_impulses(const btSolverConstraint* rows, int count) {
 }
 
 void JointConstraint::plan_rows() {
-  rows_.clear();
+  rows_->clear();
   row_count_ = 0;
   stiffness_applied_.fill(0);
   holds_spring_ = false;
@@ -105,7 +105,7 @@ void JointConstraint::plan_rows() {
   // start the iteration from what held the joint in the step before
   const int start = moving - (bounded_row_ ? 1 : 0);
   for (int r = start; r < row_count_; ++r) {
-    const Row& row = rows_[at(r)];
+    const Row& row = (*rows_)[at(r)];
     warm_[at(r - start)] = std::clamp(kWarmStart * last_impulse_[row.axis], row.lower, row.upper);
   }
   last_impulse_.fill(0);
@@ -116,7 +116,7 @@ void JointConstraint::plan_rows() {
 
 void JointConstraint::add_row(int axis, btScalar velocity, btScalar soft, btScalar lower, btScalar upper,
                               RowKind kind) {
-  rows_.push_back({velocity, soft, lower, upper, static_cast<std::uint8_t>(axis), kind});
+  rows_->push_back({velocity, soft, lower, upper, static_cast<std::uint8_t>(axis), kind});
   row_count_++;
 }
 

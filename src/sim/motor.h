@@ -60,6 +60,7 @@ class Motor {
   Result<void> refuse_own_axis(const double* in) const;
 
  private:
+  friend class WorldKey;
   void set_own(const Row& linear_row, const Row& angular_row, double value);
   void say_contradiction(int axis);
 

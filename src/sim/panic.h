@@ -21,7 +21,7 @@ class Panic {
   static constexpr double kSink = 0.1;
 
   static constexpr const char* kDoc =
-      "All comes to rest: behaviours, morphs, forces and the scene's callbacks stop. Once more ends it.";
+      "All comes to rest: behaviours, morphs, forces and the scene's callbacks stop. Once more: back to the newest good moment.";
 
   explicit Panic(World& world) : world_(world) {}
 
@@ -43,6 +43,7 @@ class Panic {
   void brake(double h);
 
  private:
+  friend class WorldKey;
   void turn(bool on);
 
   World& world_;

@@ -80,7 +80,10 @@ Part::Part(Body& body, NodeId group, std::string name, std::shared_ptr<const Geo
   btRigidBody::btRigidBodyConstructionInfo info(is_static_ ? btScalar(0) : static_cast<btScalar>(mass), nullptr,
                                                 geometry_->shape.get(), inertia);
   info.m_startWorldTransform = to_bt(pose * geometry_->frame);
-  rigid_ = std::make_unique<btRigidBody>(info);
+  {
+    const BulletMemory::Scope scope(&body_.world().bullet_memory());
+    rigid_ = std::make_unique<btRigidBody>(info);
+  }
   rigid_->setUserPointer(this);
   rigid_->setActivationState(DISABLE_DEACTIVATION);
   set_pose(pose);

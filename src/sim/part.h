@@ -103,6 +103,7 @@ class Part {
   Result<void> act_torque(std::span<const double> args);
 
   friend class WorldUndo;
+  friend class WorldKey;
   Body& body_;
   NodeId id_;
   NodeId shape_;

@@ -52,6 +52,7 @@ class PartLoads {
   void push();
 
  private:
+  friend class WorldKey;
   static constexpr std::uint32_t kNone = ~std::uint32_t{0};
   void wait(std::uint32_t place) {
     loads_[place].waits = true;

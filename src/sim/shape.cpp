@@ -93,12 +93,14 @@ Result<void> Shape::add_child(const Shape& child, const Pose& origin) {
     children_.push_back(placed);
   }
   geometry_ = nullptr;
+  store_.note_structure();
   return {};
 }
 
 void Shape::keep_children(std::size_t count) {
   children_.resize(std::min(count, children_.size()));
   geometry_ = nullptr;
+  store_.note_structure();
 }
 
 std::vector<PlacedShape> Shape::placed() const {
@@ -112,6 +114,7 @@ void Shape::become(const Shape& other) {
   model_ = other.model_;
   children_ = other.children_;
   geometry_ = other.geometry_;
+  store_.note_structure();
 }
 
 void Shape::paint(const PlacedShape& visual) {

@@ -53,6 +53,7 @@ const Table& World::table() {
                       "What every random draw derives from: a behaviour's at once, a scene's from the next start."))),
           live(state(boolean("paused", false, "Time stands still; commands and OSC are still answered."))),
           live(state(number("speed", "× real time", 1, 0.01, 100, "How fast simulated time runs when it is paced."))),
+          live(state(number("history", "s", 30, 0, 30, "Of the past that is kept for /transport/rewind; 0: nothing."))),
           live(readout(number("time", "s", 0, 0, kUnbounded, "Simulated time."))),
           live(readout(integer("tick", 0, 0, kUnbounded, "Ticks since the start."))),
           live(readout(boolean("panicked", false, "A panic holds: everything comes to rest."))),
@@ -62,7 +63,11 @@ const Table& World::table() {
   return table;
 }
 
-World::World(Store& store, const WorldSetup& setup) : store_(store), bullet_(std::make_unique<IslandWorld>(setup)) {
+World::World(Store& store, const WorldSetup& setup) : store_(store) {
+  {
+    const BulletMemory::Scope scope(&bullet_memory_);
+    bullet_ = std::make_unique<IslandWorld>(setup);
+  }
   const NodeId physics = store_.add_group(store_.root(), "physics");
   id_ = store_.add(table(), physics, "sim", this);
   body_group_ = store_.add_group(physics, "body");

@@ -119,6 +119,7 @@ class World {
   PartLoads& loads() { return loads_; }
   PartSolids& solids() { return solids_; }
   IslandWorld& bullet() { return *bullet_; }
+  BulletMemory& bullet_memory() { return bullet_memory_; }
   Contacts& contact_log() { return contacts_; }
   /// What takes a guarded call of a script back.
   WorldUndo& undo() { return undo_; }
@@ -127,6 +128,7 @@ class World {
   friend class Body;
   friend class Panic;
   friend class WorldUndo;
+  friend class WorldKey;
   void effect_gravity();
   void effect_solver();
   void effect_panic_motors() { panic_.renew(); }
@@ -139,6 +141,7 @@ class World {
 
   Store& store_;
   NodeId id_, body_group_, shape_group_;
+  BulletMemory bullet_memory_;
   std::unique_ptr<IslandWorld> bullet_;
   PartLoads loads_;
   PartSolids solids_;

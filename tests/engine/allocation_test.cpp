@@ -39,7 +39,9 @@ namespace limber::engine_test {
 namespace {
 
 std::size_t during(Show& show, int ticks) {
-  show.ticks(100);  // pools fill, the roster is made
+  // pools fill, the roster is made, history has as much as it keeps
+  show.send("/physics/sim/history", 1);
+  show.ticks(250);
   const std::size_t before = allocations.load();
   show.ticks(ticks);
   return allocations.load() - before;
@@ -61,7 +63,8 @@ TEST(EngineAllocation, NoneWithBodiesAndHeldSnapshots) {
     older = std::move(newer);
     newer = show.link.snapshots.read();
   };
-  for (int i = 0; i < 100; i++) tick();
+  show.send("/physics/sim/history", 1);
+  for (int i = 0; i < 250; i++) tick();
   const std::size_t before = allocations.load();
   for (int i = 0; i < 200; i++) tick();
   EXPECT_EQ(allocations.load() - before, 0U);

@@ -188,8 +188,8 @@ TEST(Engine, StepRefusesWhatIsNoCount) {
   show.send("/transport/step", -1);
   show.send("/transport/step", 1e9);
   show.ticks(1);
-  EXPECT_EQ(show.outbox(), (Lines{"/error /transport/step step takes 1 to 100000 ticks",
-                                  "/error /transport/step step takes 1 to 100000 ticks"}));
+  EXPECT_EQ(show.outbox(), (Lines{"/error /transport/step time can't go back: the scene has begun there",
+                                  "/error /transport/step step takes 1 to 100000 ticks, or -1 to -100000 back"}));
   EXPECT_EQ(show.engine.world().tick(), 1U);
 }
 

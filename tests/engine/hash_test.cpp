@@ -12,7 +12,7 @@ namespace {
 bool is_part(const Table& table, const Row& row) {
   if (!row.stored() || !row.writable() || &table == &Transport::table() || &table == &CounterNode::table())
     return false;
-  return !(&table == &World::table() && (row.name == "paused" || row.name == "speed"));
+  return !(&table == &World::table() && (row.name == "paused" || row.name == "speed" || row.name == "history"));
 }
 
 TEST(Hash, EveryChangedBitChangesIt) {

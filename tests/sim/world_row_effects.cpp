@@ -246,6 +246,7 @@ void add_world_effects(RowEffects& effects) {
   effects[{"World", "seed"}] = seed;
   effects[{"World", "paused"}] = [] { pacing("paused", 1); };
   effects[{"World", "speed"}] = [] { pacing("speed", 7); };
+  effects[{"World", "history"}] = [] { pacing("history", 7); };
 }
 
 void add_body_effects(RowEffects& effects) {

@@ -1,0 +1,129 @@
+// The arena as an allocator, against a plain model of what was asked for; and its images, against copies.
+#include "base/arena.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cstring>
+#include <map>
+#include <vector>
+
+#include "base/random.h"
+
+namespace limber {
+namespace {
+
+struct LivingBlock {
+  std::size_t size = 0;
+  unsigned char fill = 0;
+};
+using LivingBlocks = std::map<unsigned char*, LivingBlock>;
+
+void expect_whole(const LivingBlocks& blocks) {
+  unsigned char* end = nullptr;
+  for (const auto& [at, block] : blocks) {
+    EXPECT_EQ(reinterpret_cast<std::uintptr_t>(at) % 16, 0u);
+    EXPECT_GE(at, end) << "two blocks overlap";
+    end = at + block.size;
+    for (std::size_t i = 0; i < block.size; i++) ASSERT_EQ(at[i], block.fill);
+  }
+}
+
+// blocks of all sizes come, go and change theirs
+void live_on(Arena& arena, LivingBlocks& blocks, Random& random, int steps) {
+  const auto some = [&](double n) { return static_cast<std::size_t>(random.uniform() * n); };
+  for (int i = 0; i < steps; i++) {
+    const std::size_t size = 1 + some(some(4) == 0 ? 60000 : some(3) == 0 ? 5000 : 300);
+    const auto fill = static_cast<unsigned char>(some(256));
+    if (blocks.empty() || some(5) < 2) {
+      auto* const got = static_cast<unsigned char*>(arena.allocate(size));
+      ASSERT_NE(got, nullptr);
+      std::memset(got, fill, size);
+      blocks[got] = {size, fill};
+      continue;
+    }
+    const auto at = std::next(blocks.begin(), static_cast<std::ptrdiff_t>(some(static_cast<double>(blocks.size()))));
+    const auto [block, was] = *at;
+    blocks.erase(at);
+    if (some(2) == 0) {
+      arena.free(block);
+      continue;
+    }
+    auto* const got = static_cast<unsigned char*>(arena.resize(block, was.size, size));
+    ASSERT_NE(got, nullptr);
+    for (std::size_t k = 0; k < std::min(size, was.size); k++) ASSERT_EQ(got[k], was.fill);
+    std::memset(got, fill, size);
+    blocks[got] = {size, fill};
+  }
+}
+
+TEST(Arena, KeepsBlocksApartAndWhole) {
+  Arena arena;
+  ASSERT_TRUE(arena.exists());
+  LivingBlocks blocks;
+  Random random(1, "arena");
+  for (int round = 0; round < 5; round++) {
+    live_on(arena, blocks, random, 500);
+    expect_whole(blocks);
+  }
+}
+
+// sizes that come one after another use the same memory
+TEST(Arena, WhatIsEmptyIsUsedForOtherSizes) {
+  Arena arena;
+  unsigned char* least = nullptr;
+  unsigned char* most = nullptr;
+  for (std::size_t size = 16; size <= 4096; size += 48) {
+    std::vector<void*> blocks;
+    for (std::size_t taken = 0; taken < std::size_t{1} << 20; taken += size) blocks.push_back(arena.allocate(size));
+    for (void* block : blocks) {
+      auto* const at = static_cast<unsigned char*>(block);
+      least = least == nullptr ? at : std::min(least, at);
+      most = std::max(most, at);
+      arena.free(block);
+    }
+  }
+  EXPECT_LT(most - least, std::ptrdiff_t{3} << 20) << "86 sizes of 1 MiB each, one after the other";
+}
+
+TEST(Arena, EndsWithoutMore) {
+  Arena arena;
+  EXPECT_EQ(arena.allocate(Arena::kReserve + 1), nullptr);
+  EXPECT_EQ(arena.allocate(Arena::kReserve), nullptr);
+  void* const some = arena.allocate(Arena::kReserve / 2);
+  EXPECT_NE(some, nullptr);
+  EXPECT_EQ(arena.allocate(Arena::kReserve / 2), nullptr);
+  arena.free(some);
+  EXPECT_NE(arena.allocate(Arena::kReserve / 2), nullptr);
+}
+
+// what lives on after an image was taken does not matter: the image brings back all blocks, and all that comes after
+// lies where it lay
+TEST(Arena, ImagesBringBackAllAndTheFutureToo) {
+  Arena arena;
+  PageStore pages;
+  Random random(2, "arena");
+  LivingBlocks now;
+  live_on(arena, now, random, 2000);
+  PageStore::Image image;
+  arena.copy(pages, nullptr, image);
+  const LivingBlocks then = now;
+  const Random random_then = random;
+  live_on(arena, now, random, 1500);
+  const LivingBlocks later = now;
+  for (int round = 0; round < 3; round++) {
+    live_on(arena, now, random, 700 * round);
+    arena.bring_back(pages, image);
+    expect_whole(then);
+    now = then;
+    random = random_then;
+    live_on(arena, now, random, 1500);
+    expect_whole(now);
+    ASSERT_EQ(now.size(), later.size());
+    const auto same = [](const auto& a, const auto& b) { return a.first == b.first; };
+    EXPECT_TRUE(std::equal(now.begin(), now.end(), later.begin(), same));
+  }
+}
+
+}  // namespace
+}  // namespace limber

@@ -1,0 +1,78 @@
+// Pages: what they hold, what they share, what they take.
+#include "base/page_store.h"
+
+#include <gtest/gtest.h>
+
+#include <vector>
+
+#include "base/random.h"
+
+namespace limber {
+namespace {
+
+constexpr std::size_t kPage = PageStore::kPage;
+
+std::vector<std::byte> noise(std::size_t size, std::uint64_t seed) {
+  Random random(seed);
+  std::vector<std::byte> memory(size);
+  for (std::byte& b : memory) b = static_cast<std::byte>(random.next());
+  return memory;
+}
+
+TEST(PageStore, GivesBackToTheByte) {
+  PageStore pages;
+  for (const std::size_t size : {std::size_t{1}, kPage - 1, kPage, kPage + 1, 10 * kPage + 17}) {
+    const std::vector<std::byte> memory = noise(size, size);
+    PageStore::Image image;
+    pages.append(image, memory, nullptr);
+    std::vector<std::byte> back(size);
+    EXPECT_EQ(pages.copy_back(image, 0, back), (size + kPage - 1) / kPage);
+    EXPECT_EQ(back, memory);
+    pages.release(image);
+  }
+  EXPECT_EQ(pages.bytes(), 0u);
+}
+
+TEST(PageStore, SharesWhatIsTheSame) {
+  PageStore pages;
+  std::vector<std::byte> memory = noise(100 * kPage, 3);
+  PageStore::Image first, second;
+  pages.append(first, memory, nullptr);
+  EXPECT_EQ(pages.bytes(), 100 * kPage);
+  memory[50 * kPage] ^= std::byte{1};
+  pages.append(second, memory, &first);
+  EXPECT_EQ(pages.bytes(), 101 * kPage);
+  // either may go first
+  pages.release(first);
+  EXPECT_EQ(pages.bytes(), 100 * kPage);
+  std::vector<std::byte> back(memory.size());
+  pages.copy_back(second, 0, back);
+  EXPECT_EQ(back, memory);
+}
+
+TEST(PageStore, ZerosTakeNothing) {
+  PageStore pages;
+  const std::vector<std::byte> zeros(20 * kPage);
+  PageStore::Image image;
+  pages.append(image, zeros, nullptr);
+  EXPECT_EQ(pages.bytes(), 0u);
+  std::vector<std::byte> back = noise(20 * kPage, 4);
+  pages.copy_back(image, 0, back);
+  EXPECT_EQ(back, zeros);
+}
+
+TEST(PageStore, LeavesWhatItHasNot) {
+  PageStore pages;
+  const std::vector<std::byte> memory = noise(3 * kPage, 5);
+  PageStore::Image image;
+  pages.append_none(image, 2 * kPage);
+  pages.append(image, std::span(memory).last(kPage), nullptr);
+  std::vector<std::byte> back = noise(3 * kPage, 6);
+  std::vector<std::byte> expected = back;
+  std::copy(memory.end() - kPage, memory.end(), expected.end() - kPage);
+  pages.copy_back(image, 0, back);
+  EXPECT_EQ(back, expected);
+}
+
+}  // namespace
+}  // namespace limber
