@@ -268,11 +268,12 @@ void Engine::pass(bool may_step) {
 void Engine::play(bool running) {
   Stage& stage = *stage_;
   Stopwatch watch;
+  end_panic();
   if (running) presets_.advance(stage.world);
   call_handlers();
   if (running && stage.scene != nullptr && !stage.world.panic().on()) stage.scene->tick(stage.world.timestep());
   carry_out_wishes();
-  if (stage.world.take_panic_request()) press_panic();
+  begin_panic();
   edits_.end(stage.store);
   if (!again_) notes_.tell(stage.store);
   times_.scripts = watch.lap();

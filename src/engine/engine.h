@@ -131,7 +131,8 @@ class Engine : private ScriptHost {
   void begin_again(bool on);
   void do_again(PastPass& pass);
   bool reset();
-  void press_panic();
+  void begin_panic();
+  void end_panic();
   Result<void> start_show();
   void keep_state(Stage& fresh, std::string_view name) const;
   /// The stage becomes the show; the answer is the one before.
@@ -218,7 +219,6 @@ class Engine : private ScriptHost {
   std::shared_ptr<const Preset> recovered_;   // what the show begins with
   std::string recovered_when_;                // empty: of a take
   std::uint64_t given_version_ = 0;           // of the store, when values were given last
-  std::uint64_t panic_tick_ = 0;               // when the panic that holds began
   std::string given_scene_;                   // the scene then
   Clock clock_;
   PhaseTimes times_;

@@ -30,6 +30,8 @@ std::size_t History::bytes() const {
 
 void History::begin_anew(std::string_view why) {
   while (!keys_.empty()) drop(keys_.size() - 1);
+  if (held_ != nullptr) forget(std::move(held_));
+  hold_ = kNoTick;
   why_ = why;
   too_large_ = false;
 }
@@ -37,10 +39,26 @@ void History::begin_anew(std::string_view why) {
 void History::drop(std::size_t number) {
   std::unique_ptr<Key> key = std::move(keys_[number]);
   keys_.erase(keys_.begin() + static_cast<std::ptrdiff_t>(number));
+  forget(std::move(key));
+}
+
+void History::forget(std::unique_ptr<Key> key) {
   key->world.release(pages_);
   key->scene.release(pages_);
   key->inputs.go_on_taking(0);
   spare_.push_back(std::move(key));
+}
+
+void History::let_go_oldest() {
+  if (keys_.front()->tick != hold_) return drop(0);
+  held_ = std::move(keys_.front());
+  held_->inputs.go_on_taking(0);
+  keys_.erase(keys_.begin());
+}
+
+void History::hold() {
+  if (held_ != nullptr) forget(std::move(held_));
+  hold_ = keys_.empty() ? kNoTick : keys_.back()->tick;
 }
 
 void History::note(const Message& message, const Origin& origin, bool evaluate) {
@@ -131,12 +149,12 @@ void History::take(Stage& stage) {
 
 void History::trim(const World& world, double seconds) {
   while (keys_.size() > 1 && keys_[1]->time <= world.time() - seconds + 1e-9) {
-    drop(0);
+    let_go_oldest();
     why_ = "that is as much as is kept";
   }
   bool short_of_room = false;
   while (keys_.size() > 1 && bytes() > most_) {
-    drop(0);
+    let_go_oldest();
     short_of_room = true;
     why_ = "more does not fit into 256 MB";
   }
@@ -207,7 +225,11 @@ void History::cut(bool last) {
 bool History::return_before(Stage& stage, std::uint64_t tick) {
   std::size_t number = keys_.size();
   while (number > 0 && keys_[number - 1]->tick >= tick) number--;
-  if (number == 0) return false;
+  if (number == 0) {
+    if (held_ == nullptr || held_->tick >= tick) return false;
+    keys_.insert(keys_.begin(), std::move(held_));
+    number = 1;
+  }
   restore(stage, number - 1);
   cut();
   return true;

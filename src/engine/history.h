@@ -74,6 +74,8 @@ class History {
   bool next(PastPass& pass);
   /// What next() has not given never was; `last`: nor was what it gave last.
   void cut(bool last = false);
+  /// The newest key state stays until begin_anew() or the next hold(), however long ago it may be: for return_before().
+  void hold();
   /// The newest key state before a tick is brought back, and all behind it never was; false: there is none.
   bool return_before(Stage& stage, std::uint64_t tick);
 
@@ -97,10 +99,13 @@ class History {
     std::uint64_t version = 0;
   };
 
+  static constexpr std::uint64_t kNoTick = ~std::uint64_t{0};
   bool due(const World& world, bool stopped) const;
   void take(Stage& stage);
   void restore(Stage& stage, std::size_t number);
   void drop(std::size_t number);
+  void forget(std::unique_ptr<Key> key);
+  void let_go_oldest();
   void trim(const World& world, double seconds);
   static void pass_input(KeyBytes& bytes, TakeMessage& input);
   static void pass_stop(KeyBytes& bytes, StoppedCall& stop);
@@ -110,6 +115,8 @@ class History {
   Presets& presets_;
   PageStore pages_;
   std::vector<std::unique_ptr<Key>> keys_;   // the oldest first
+  std::unique_ptr<Key> held_;                // one that would have gone, without what lies behind it
+  std::uint64_t hold_ = kNoTick;             // its tick
   std::vector<std::unique_ptr<Key>> spare_;  // their room is used again
   Known<PerformerHand> known_hand_;
   Known<Edits::Memory> known_edits_;

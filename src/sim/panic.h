@@ -2,6 +2,8 @@
 // changed: what acts otherwise meanwhile is Bullet's alone. [sim]
 #pragma once
 
+#include <cstdint>
+
 #include "base/vec.h"
 #include "sim/joint_constraint.h"
 #include "sim/motor.h"
@@ -21,11 +23,14 @@ class Panic {
   static constexpr double kSink = 0.1;
 
   static constexpr const char* kDoc =
-      "All comes to rest: behaviours, morphs, forces and the scene's callbacks stop. Once more: back to the newest good moment.";
+      "All comes to rest: behaviours, morphs, forces and the scene's callbacks stop. Once more: back to the newest "
+      "good moment.";
 
   explicit Panic(World& world) : world_(world) {}
 
   bool on() const { return on_; }
+  /// The world's tick when it began, while it holds.
+  std::uint64_t began() const { return began_; }
   /// Behaviours don't act and forces are lost until end(); motors do what `panic_motors` says.
   void begin();
   /// Everything acts again as it is set.
@@ -48,6 +53,7 @@ class Panic {
 
   World& world_;
   bool on_ = false;
+  std::uint64_t began_ = 0;
 };
 
 }  // namespace limber

@@ -11,8 +11,6 @@
 namespace limber::engine_test {
 namespace {
 
-void no_hands(Show&, std::uint64_t) {}
-
 // a run that goes back by chance again and again, in every tick the same as one that never did
 void expect_same_walk(const EngineOptions& options, TickHands hands, std::uint64_t ticks, std::uint64_t seed) {
   log_to_stderr(false);

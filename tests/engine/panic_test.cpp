@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "engine/edited.h"
+#include "engine/rewound.h"
 #include "engine/taken.h"
 
 namespace limber::engine_test {
@@ -100,6 +101,8 @@ TEST(PanicButton, AScriptMayPressIt) {
   show.send("/panic");
   show.send("/panic");
   show.ticks(1);
+  EXPECT_EQ(show.read(kPanicked), 1) << "a script's second press is carried out ahead of the next tick";
+  show.ticks(1);
   EXPECT_EQ(show.read(kPanicked), 0) << "twice in a tick is once";
 }
 
@@ -159,6 +162,66 @@ TEST(PanicButton, ItIsNoEditAndNoHandRemembersIt) {
   show.ticks(1);
   EXPECT_EQ(show.read("/physics/sim/gravity", 2), 0) << "the edit before it";
   EXPECT_EQ(show.read(kPanicked), 1);
+}
+
+// presses twice, `held` ticks apart, and expects the key state before the first
+void expect_back(Show& show, std::uint64_t held, std::vector<std::uint64_t>& hashes, TickHands hands) {
+  World& world = show.engine.world();
+  const std::uint64_t pressed = world.tick();
+  show.send("/transport/panic");
+  show.ticks(static_cast<int>(held));
+  ASSERT_TRUE(world.panic().on());
+  show.send("/transport/panic");
+  show.engine.idle();
+  const std::uint64_t back = world.tick();
+  EXPECT_FALSE(world.panic().on());
+  ASSERT_LT(back, pressed);
+  EXPECT_GE(back + 61, pressed) << "key states are a second apart";
+  ASSERT_EQ(show.engine.state_hash(), hashes.at(back)) << "back at tick " << back;
+  ASSERT_TRUE(plays_again(show, pressed, hands, hashes));
+}
+
+TEST(PanicButton, TheSecondPressGoesBackToTheNewestGoodMoment) {
+  const ShowFolder folder;
+  lay_out_rewound(folder);
+  Show show(rewound_options(folder));
+  std::vector<std::uint64_t> hashes;
+  for (const std::uint64_t at : {170, 200, 333}) {
+    play_to(show, at, many_hands, hashes);
+    expect_back(show, at % 90, hashes, many_hands);
+    // what lies before can be gone back to again, and the second press was never there
+    show.send("/transport/rewind", 0.4);
+    show.engine.idle();
+    ASSERT_EQ(show.engine.state_hash(), hashes.at(show.engine.world().tick()));
+    ASSERT_TRUE(plays_again(show, at, many_hands, hashes));
+  }
+}
+
+TEST(PanicButton, TheGoodMomentWaitsLongerThanHistoryGoesBack) {
+  const ShowFolder folder;
+  lay_out_rewound(folder);
+  EngineOptions options = rewound_options(folder);
+  options.sets = {{"/physics/sim/history", {Arg::of(2.0)}}};
+  Show show(options);
+  std::vector<std::uint64_t> hashes;
+  play_to(show, 200, no_hands, hashes);
+  expect_back(show, 400, hashes, no_hands);
+  expect_back(show, 3, hashes, no_hands);
+}
+
+TEST(PanicButton, WithoutHistoryTheSecondPressLetsEverythingActAgain) {
+  const ShowFolder folder;
+  folder.write("scripts/scene.lua", kPanicScene);
+  EngineOptions options = fast_options(folder.path("scripts/scene.lua"));
+  options.sets = {{"/physics/sim/history", {Arg::of(0.0)}}};
+  Show show(options);
+  show.ticks(100);
+  show.send("/transport/panic");
+  show.ticks(100);
+  show.send("/transport/panic");
+  show.ticks(1);
+  EXPECT_FALSE(show.engine.world().panic().on());
+  EXPECT_EQ(show.engine.world().tick(), 201U);
 }
 
 TEST(PanicButton, ATakeWithPanicsIsReplayedToItsHash) {

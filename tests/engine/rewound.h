@@ -95,6 +95,7 @@ inline EngineOptions rewound_options(const ShowFolder& folder) {
 
 /// What hands do before the tick that follows `tick`.
 using TickHands = void (*)(Show& show, std::uint64_t tick);
+inline void no_hands(Show&, std::uint64_t) {}
 
 /// Messages of many kinds, by the tick alone: floods, refusals, undo, presets and morphs, texts, mistakes.
 inline void many_hands(Show& show, std::uint64_t tick) {
