@@ -1,6 +1,8 @@
 // Tick by tick, whatever a tick's length is.
 #include "app/moments.h"
 
+#include <algorithm>
+
 namespace limber {
 
 namespace {
@@ -25,8 +27,10 @@ Moments::Went Moments::go_to(double seconds) {
     link_.outbox.drain(gone_);
     now_ = link_.snapshots.read();
     after_tick_();
-    // after a reset time begins anew; the film goes on
-    const double step = now_->time >= before_->time ? now_->time - before_->time : now_->time;
+    // after a reset time begins anew, after a rewind it goes on from earlier; the film goes on by a tick
+    const bool jumped = now_->time < before_->time;
+    const double step = jumped ? std::min(now_->time, last_step_) : now_->time - before_->time;
+    if (step > 0) last_step_ = step;
     idle = step > 0 ? 0 : idle + 1;
     // a take goes on by itself, however many hands came while its time stood still
     if (idle > 0 && !engine_.replays() && (now_->paused || idle > kMostIdle)) return Went::stuck;

@@ -39,6 +39,7 @@ class Moments {
   std::shared_ptr<const Snapshot> before_, now_;
   double elapsed_ = 0;
   double elapsed_before_ = 0;
+  double last_step_ = 0;        // s, of a tick that went on
   std::vector<Outgoing> gone_;  // nobody listens
 };
 

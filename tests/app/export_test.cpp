@@ -216,6 +216,35 @@ sim:add_body("ball"):add_part("p", sim:add_sphere_shape("ball", 0.1)).linear_vel
   EXPECT_NEAR(most, 0.5, 0.03);
 }
 
+TEST(Export, TimeThatGoesBackIsOneFrame) {
+  const Folder folder;
+  const std::string take = folder.path() + "/show.take";
+  {
+    EngineOptions options;
+    options.scene = folder.file("show.lua", R"(
+sim.gravity = vec3(0, 0, 0)
+sim:add_body("ball"):add_part("p", sim:add_sphere_shape("ball", 0.1)).linear_velocity = vec3(1, 0, 0)
+)");
+    options.record = take;
+    options.fast = true;
+    EngineLink link;
+    Engine engine(link, options);
+    ASSERT_TRUE(engine.start());
+    for (int i = 0; i < 90; i++) engine.tick();
+    link.inbox.push({{Message{"/transport/rewind", {Arg::of(0.25)}}}, {Hand::osc, 0x7f000001, 4000}});
+    for (int i = 0; i < 30; i++) engine.tick();
+    engine.end_take();
+  }
+  const Ran ran = run({"export", take, "--format", "csv", "--rate", "60"});
+  EXPECT_EQ(ran.code, 0) << ran.err;
+  const auto table = table_of(folder.path() + "/show.csv");
+  const std::vector<double>& x = table.at("ball/part/p/x");
+  ASSERT_EQ(x.size(), 121U) << "the start, and each tick that was played";
+  EXPECT_NEAR(x[90], 1.5, 1e-3);
+  EXPECT_NEAR(x[91], 1.25 + 1.0 / 60, 1e-3);
+  EXPECT_NEAR(x[120], 1.75, 1e-3);
+}
+
 TEST(Export, BodiesAreChosen) {
   const Folder folder;
   const std::string take = record(folder, kShow, "40");
