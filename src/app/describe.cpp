@@ -59,7 +59,7 @@ std::vector<const Table*> described_classes() {
     if (type->group_table != nullptr) all.push_back(type->group_table);
   }
   all.insert(all.end(), {&Visuals::table(), &Camera::table(), &Look::table(), &Shape::table(), &Transport::table(),
-                         &PresetNode::table(), &EditNode::table(), &CounterNode::table()});
+                         &PresetNode::table(), &EditNode::table(), &TakeNode::table(), &CounterNode::table()});
   return all;
 }
 

@@ -292,6 +292,7 @@ void Engine::publish() {
   stage_->counters.tell();
   stage_->preset_node.tell();
   tell_transport();
+  tell_take();
   stage_->publisher.publish(stage_->transport.paused(), clock_.speed_reached(), times_);
 }
 

@@ -168,6 +168,7 @@ class Engine : private ScriptHost {
   Outcome ask_take(const Message& message);
   void begin_take();
   void drop_take();
+  void tell_take();
   void take_tick(bool running, bool begins = false);
   std::function<void(const std::string&)> say_take_failed();
   void begin_show();
@@ -211,6 +212,7 @@ class Engine : private ScriptHost {
   std::unique_ptr<TakeRecorder> recorder_;
   std::unique_ptr<TakePlayer> player_;
   std::vector<std::unique_ptr<TakeWriter>> written_;  // takes that have ended, and may still be written
+  std::string take_name_;                             // of the one that is recorded or replayed
   std::optional<std::string> take_wanted_;            // the file of a take that begins at the tick's end
   bool take_ends_ = false;
   bool answers_taken_ = false;                // what is sent now answers a message of the take that is replayed

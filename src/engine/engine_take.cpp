@@ -38,6 +38,8 @@ Result<std::string> take_name(const Message& message, const std::string& scene) 
   return fmt::format("{}-{}", std::filesystem::path(scene).stem().string(), text);
 }
 
+std::string name_of(const std::string& file) { return std::filesystem::path(file).stem().string(); }
+
 // of a replay: what was stopped then is stopped again, nothing else is
 ScriptLimits no_limits() {
   ScriptLimits limits;
@@ -93,6 +95,7 @@ Result<void> Engine::start_record() {
       std::make_unique<TakeRecorder>(TakeWriter::Place{options_.record, false}, take_begin(false), say_take_failed());
   Result<void> opened = recorder_->opened();
   if (!opened) recorder_ = nullptr;
+  take_name_ = name_of(options_.record);
   return opened;
 }
 
@@ -138,6 +141,7 @@ Outcome Engine::ask_take(const Message& message) {
 void Engine::begin_take() {
   const std::string file = *std::exchange(take_wanted_, std::nullopt);
   (void)stage_->world.take_reset_request();
+  take_name_ = name_of(file);
   edits_.clear();  // a replay does not know of them
   calls_.begin_tick();
   recorder_ = std::make_unique<TakeRecorder>(TakeWriter::Place{file, true}, take_begin(true), say_take_failed());
@@ -167,6 +171,13 @@ void Engine::finish_saving() {
   written_.clear();
 }
 
+void Engine::tell_take() {
+  TakeNode::Told told;
+  if (player_ != nullptr) told = {take_name_, true, player_->ticks(), player_->whole()};
+  if (recorder_ != nullptr) told = {take_name_, false, recorder_->ticks(), 0};
+  stage_->take_node.tell(told);
+}
+
 void Engine::take_tick(bool running, bool begins) {
   const auto hash = [this] { return state_hash(); };
   if (player_ != nullptr) player_->compare(stage_->world, calls_, hash);
@@ -179,6 +190,7 @@ Result<void> Engine::start_replay() {
   auto player = TakePlayer::open(options_.replay, options_.current_scripts);
   if (!player) return Error{player.error()};
   player_ = std::move(*player);
+  take_name_ = name_of(options_.replay);
   const TakeBegin& begin = player_->begin();
   options_.scene = begin.scene;
   options_.scene_options.seed = begin.seed;

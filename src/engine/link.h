@@ -21,9 +21,11 @@ struct EngineLink {
   static constexpr std::size_t kMostBytes = std::size_t{64} << 20;  ///< A datagram of 16 KiB may grow to 0.8 MiB.
   /// Datagrams that wait: what is slow to carry out takes some twenty ticks then (Engine::kTickWork).
   static constexpr std::size_t kMostCommands = 16384;
+  static constexpr std::size_t kMostPanelItems = 1024;  ///< More answers than that nobody reads.
   Inbox<Command> inbox{kMostCommands, kMostBytes};
   Inbox<Outgoing> outbox{kMostItems, kMostBytes};
-  Inbox<Outgoing> query_outbox{kMostItems, kMostBytes};  ///< Answers to Hand::query.
+  Inbox<Outgoing> query_outbox{kMostItems, kMostBytes};       ///< Answers to Hand::query.
+  Inbox<Outgoing> panel_outbox{kMostPanelItems, kMostBytes};  ///< Answers to Hand::panel.
   Latest<Snapshot> snapshots;
   Latest<Image> images;  ///< Made when asked for.
   std::atomic<std::uint64_t> image_asks{0};
@@ -59,6 +61,10 @@ struct EngineLink {
     if (answer && out.origin.hand == Hand::query) {
       query_outbox.push(out);
       wake_query();
+      if (out.to == Outgoing::To::sender) return;
+    }
+    if (answer && out.origin.hand == Hand::panel) {
+      panel_outbox.push(out);
       if (out.to == Outgoing::To::sender) return;
     }
     outbox.push(std::move(out));

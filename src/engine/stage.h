@@ -9,6 +9,7 @@
 #include "engine/link.h"
 #include "engine/preset_node.h"
 #include "engine/publish.h"
+#include "engine/take_node.h"
 #include "engine/transport.h"
 #include "script/scene.h"
 
@@ -21,6 +22,7 @@ struct Stage {
         counters(store, link.counters),
         preset_node(world, presets),
         edit_node(world, edits),
+        take_node(world),
         dispatch(world, &presets),
         publisher(world, link.snapshots) {}
 
@@ -64,6 +66,7 @@ struct Stage {
   CounterNode counters;
   PresetNode preset_node;
   EditNode edit_node;
+  TakeNode take_node;
   Dispatch dispatch;
   Publisher publisher;
   std::unique_ptr<Scene> scene;  // last: it goes first

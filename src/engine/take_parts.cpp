@@ -203,6 +203,8 @@ void append_tick(std::string& text, const TakeTick& tick, std::size_t message_co
   for (const std::uint16_t body : tick.bodies) out.word(body, 2);
 }
 
+bool tick_runs(std::uint8_t first_byte) { return (first_byte & kRunning) != 0; }
+
 bool read_tick(std::string_view bytes, TakeForms& forms, TakeTick& tick) {
   TakeScan in(bytes);
   tick = {};

@@ -14,7 +14,10 @@ namespace limber {
 Result<std::unique_ptr<TakePlayer>> TakePlayer::open(const std::string& path, bool current_scripts) {
   auto reader = TakeReader::open(path);
   if (!reader) return Error{reader.error()};
+  auto counted = TakeReader::open(path);
+  if (!counted) return Error{counted.error()};
   std::unique_ptr<TakePlayer> player(new TakePlayer(std::move(*reader), current_scripts));
+  player->whole_ = (*counted)->count_ticks();
   player->ahead_ = player->reader_->next();
   if (!player->ahead_) {
     const std::string& damage = player->reader_->damage();

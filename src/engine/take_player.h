@@ -36,6 +36,9 @@ class TakePlayer {
   bool steps_next() const { return ahead_ && ahead_->running; }
   bool over() const { return over_; }
   const TakeTick& tick() const { return tick_; }
+  /// Ticks replayed so far, and those of the whole take; where time stood still does not count.
+  std::uint64_t ticks() const { return found_.ticks; }
+  std::uint64_t whole() const { return whole_; }
 
   /// The tick's next run, when it is one of that kind; null: it is none.
   const TakeRun* take_run(TakeRun::Kind kind);
@@ -60,6 +63,7 @@ class TakePlayer {
   TakeTick tick_;
   std::optional<TakeTick> ahead_;
   std::size_t next_run_ = 0;
+  std::uint64_t whole_ = 0;
   TakeVerdict found_;
   std::size_t looking_ = 0;            // ticks in which a body may still be found
   std::vector<std::uint64_t> bodies_;  // scratch

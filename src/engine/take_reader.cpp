@@ -78,7 +78,7 @@ bool TakeReader::bytes(std::size_t count, std::string& out) {
   return static_cast<bool>(in_->read(out.data(), static_cast<std::streamsize>(count)));
 }
 
-std::optional<TakeFrame> TakeReader::frame() {
+std::optional<TakeReader::FrameHead> TakeReader::frame_head() {
   if (!damage_.empty() || position_ >= size_) return {};
   const int first = in_->get();
   std::uint64_t length = 0;
@@ -97,11 +97,17 @@ std::optional<TakeFrame> TakeReader::frame() {
     if (kinds.find(static_cast<char>(first)) == kinds.npos) damaged("no frame begins like this");
     return {};
   }
+  return FrameHead{first, length, read};
+}
+
+std::optional<TakeFrame> TakeReader::frame() {
+  const std::optional<FrameHead> head = frame_head();
+  if (!head) return {};
   std::string check;
-  if (!bytes(static_cast<std::size_t>(length), payload_) || !bytes(4, check)) return {};
-  const auto kind = static_cast<TakeFrame>(first);
+  if (!bytes(static_cast<std::size_t>(head->length), payload_) || !bytes(4, check)) return {};
+  const auto kind = static_cast<TakeFrame>(head->kind);
   if (TakeScan(check).word(4) != frame_check(kind, payload_)) return damaged("a checksum is wrong"), std::nullopt;
-  position_ += read + length + 4;
+  position_ += head->bytes + head->length + 4;
   return kind;
 }
 
@@ -119,6 +125,17 @@ std::optional<TakeTick> TakeReader::next() {
     if (*kind == TakeFrame::tick) return tick;
   }
   return {};
+}
+
+std::uint64_t TakeReader::count_ticks() {
+  std::uint64_t count = 0;
+  while (const std::optional<FrameHead> head = frame_head()) {
+    const bool tick = static_cast<TakeFrame>(head->kind) == TakeFrame::tick && head->length > 0;
+    if (tick && tick_runs(static_cast<std::uint8_t>(in_->get()))) count++;
+    in_->ignore(static_cast<std::streamsize>(head->length + 4 - (tick ? 1 : 0)));
+    position_ += head->bytes + head->length + 4;
+  }
+  return count;
 }
 
 bool TakeReader::take_frame(TakeFrame kind, TakeTick& tick) {

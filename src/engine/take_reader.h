@@ -23,6 +23,8 @@ class TakeReader {
   const TakeBegin& begin() const { return begin_; }
   /// The next tick; nothing where the take ends.
   std::optional<TakeTick> next();
+  /// Of the ticks that are left, those in which time goes on; it is at the end then. Reads frames' heads alone.
+  std::uint64_t count_ticks();
   /// Once next() gave nothing: how it was ended; nothing, where it was cut off.
   const std::optional<TakeEnd>& end() const { return end_; }
   /// What is wrong behind the last whole frame, if something is.
@@ -44,6 +46,13 @@ class TakeReader {
  private:
   explicit TakeReader(std::string name) : name_(std::move(name)) {}
   Result<void> read_head();
+  struct FrameHead {
+    int kind = 0;
+    std::uint64_t length = 0;  // of the payload
+    std::uint64_t bytes = 0;   // of the head itself
+  };
+  /// Nothing at the end, and where no whole frame is left.
+  std::optional<FrameHead> frame_head();
   /// The next frame's kind; nothing at the end, and where no whole frame is left.
   std::optional<TakeFrame> frame();
   bool bytes(std::size_t count, std::string& out);

@@ -58,6 +58,7 @@ void TakeRecorder::end_tick(bool running, const World& world, const CallLedger& 
                             const std::function<std::uint64_t()>& state_hash, bool whole) {
   if (!running && !whole && tick_.runs.empty() && message_count_ == 0 && calls.stopped().empty()) return;
   tick_.running = running;
+  if (running) ticks_++;
   tick_.stopped = calls.stopped();
   tick_.tick = world.tick();
   tick_.motion = world.motion_hash(bodies_);

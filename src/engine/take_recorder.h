@@ -26,6 +26,8 @@ class TakeRecorder {
   /// Waits until the file is there, or can't be; before time goes.
   Result<void> opened() { return writer_->opened(); }
   bool failed() const { return writer_->failed(); }
+  /// Ticks in it so far, those in which time stood still left out.
+  std::uint64_t ticks() const { return ticks_; }
 
   /// A run of the scene begins: its number in this tick.
   std::size_t begin_run(TakeRun run);
@@ -49,6 +51,7 @@ class TakeRecorder {
   std::string messages_;
   std::size_t message_count_ = 0;
   std::uint32_t files_ = 0;
+  std::uint64_t ticks_ = 0;
   std::size_t state_credit_ = 0;
   std::size_t next_body_ = 0;
   Message console_;                    // scratch

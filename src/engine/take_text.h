@@ -73,6 +73,8 @@ bool read_begin(std::string_view bytes, TakeBegin& begin);
 
 /// Everything of a tick but its messages, which are written as they come: `messages` are their bytes.
 void append_tick(std::string& out, const TakeTick& tick, std::size_t message_count, std::string_view messages);
+/// Whether time goes on in the tick that begins with this byte.
+bool tick_runs(std::uint8_t first_byte);
 bool read_tick(std::string_view bytes, TakeForms& forms, TakeTick& tick);
 
 std::string text_of(const TakeEnd& end);

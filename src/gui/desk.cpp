@@ -15,6 +15,7 @@ namespace {
 
 constexpr double kAskEvery = 1.0 / 20;  // s; the simulation gives a hundredth of its time to images at most
 constexpr double kNoticeLasts = 2.5;    // s
+constexpr double kRefusalStays = 8;     // s; a reason is read
 
 }  // namespace
 
@@ -102,6 +103,17 @@ double Desk::number(std::string_view path, double otherwise) const {
   return at && this->values(*at, values) ? values[0] : otherwise;
 }
 
+TakeState Desk::take() const {
+  TakeState take;
+  if (const auto name = find("/take/name")) take.name = text(name->place);
+  if (take.name.empty()) return take;
+  const double timestep = number("/physics/sim/timestep");
+  take.replays = number("/take/replays") != 0;
+  take.seconds = timestep * number("/take/ticks");
+  take.whole = timestep * number("/take/whole");
+  return take;
+}
+
 void Desk::choose(std::string path) {
   selected = std::move(path);
   reveal = selected;
@@ -124,8 +136,23 @@ void Desk::copied(const std::string& text) {
   say(fmt::format("copied: {}", text));
 }
 
+// what was refused; and a rewind that went less far than it was asked to
+void Desk::hear_answers() {
+  link.panel_outbox.drain(answers_);
+  for (const Outgoing& answer : answers_) {
+    const std::vector<Arg>& args = answer.message.args;
+    if (answer.to == Outgoing::To::error && args.size() == 2) {
+      refusal = fmt::format("{}: {}", args[0].text, args[1].text);
+      refusal_until = clock + kRefusalStays;
+    } else if (answer.message.address == "/transport/rewound" && args.size() > 2) {
+      say(fmt::format("{:.2f} s back, no further: {}", args[0].number, args[2].text));
+    }
+  }
+}
+
 void Desk::look(double clock_now) {
   clock = clock_now;
+  hear_answers();
   now = link.snapshots.read();
   if (std::shared_ptr<const Image> newest = link.images.read(); newest != nullptr && newest != image) {
     image = std::move(newest);

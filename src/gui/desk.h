@@ -27,6 +27,18 @@ struct PlacedRow {
 
 struct GuiOptions;
 
+/// The take that is recorded or replayed, as the image has it.
+struct TakeState {
+  std::string name;  ///< Empty: there is none.
+  bool replays = false;
+  double seconds = 0;  ///< So far; of a replay: where it is.
+  double whole = 0;    ///< Of a replay: how long the take is.
+  bool recorded() const { return !name.empty() && !replays; }
+};
+
+/// How far back one press goes, s.
+inline constexpr double kRewindSeconds = 2;
+
 class Desk {
  public:
   explicit Desk(EngineLink& engine_link) : link(engine_link) {}
@@ -49,6 +61,8 @@ class Desk {
   bool help = false;               ///< F2.
   std::string notice;              ///< A line that is shown for a while, such as what was copied.
   double notice_until = 0;         ///< s
+  std::string refusal;             ///< The newest message of the panel's that was refused, and why.
+  double refusal_until = 0;        ///< s
   /// What a hand drags in the picture, and where to, pixels.
   struct Mark {
     double x = 0, y = 0, to_x = 0, to_y = 0;
@@ -84,6 +98,15 @@ class Desk {
   /// A preset by its number from 1, in the time that is set.
   void recall(double number);
 
+  // what the transport does
+  bool panicked() const { return number("/physics/sim/panicked") != 0; }
+  void panic() { send("/transport/panic"); }
+  void step_time(int ticks) { send("/transport/step", {Arg::of(static_cast<double>(ticks))}); }
+  void rewind(double seconds) { send("/transport/rewind", {Arg::of(seconds)}); }
+  TakeState take() const;
+  /// A take begins, or ends.
+  void record() { send(take().recorded() ? "/take/stop" : "/take/record"); }
+
   /// Takes back what a hand has set last, whichever it was, and does it again.
   void undo();
   void redo();
@@ -94,6 +117,7 @@ class Desk {
   void look(double clock_now);
 
  private:
+  void hear_answers();
   void step_back(const char* action, const char* what, const char* none);
 
   HandValues hand_;
@@ -101,6 +125,7 @@ class Desk {
   std::uint16_t gesture_ = 0;
   std::uint64_t asked_ = 0;
   double asked_at_ = 0;
+  std::vector<Outgoing> answers_;  // scratch
 };
 
 /// Names of the ways in which morphs go.

@@ -123,6 +123,7 @@ void Gui::frame(const GuiFrame& frame) {
     for (std::size_t i = 0; i < layout_.slots.size(); i++) draw_slot(static_cast<Slot>(i));
   }
   if (desk_.mark) draw_mark(*desk_.mark);
+  if (!desk_.settings.hidden && desk_.panicked()) draw_panic();
   if (desk_.help) draw_help();
   if (desk_.clock < desk_.notice_until) draw_notice();
   if (!ImGui::IsAnyItemActive()) desk_.let_go();
@@ -162,7 +163,19 @@ void Gui::act(HotkeyAction action, const KeyPress& press) {
       if (desk_.now != nullptr) desk_.send(desk_.now->paused ? "/transport/play" : "/transport/pause");
       break;
     case HotkeyAction::step:
-      desk_.send("/transport/step");
+      desk_.step_time(1);
+      break;
+    case HotkeyAction::step_back:
+      desk_.step_time(-1);
+      break;
+    case HotkeyAction::rewind:
+      desk_.rewind(kRewindSeconds);
+      break;
+    case HotkeyAction::record:
+      desk_.record();
+      break;
+    case HotkeyAction::panic:
+      desk_.panic();
       break;
     case HotkeyAction::reset:
       desk_.send("/transport/reset");
@@ -212,7 +225,6 @@ void Gui::draw_slot(Slot slot) {
   ImGui::SetNextWindowSize({static_cast<float>(rect.width), static_cast<float>(rect.height)});
   if (ImGui::Begin(fmt::format("##slot{}", static_cast<int>(slot)).c_str(), nullptr, kFixed)) {
     if (slot == Slot::top) {
-      if (!layout_.compact) ImGui::SetCursorPosY((ImGui::GetWindowHeight() - ImGui::GetFrameHeight()) / 2);
       for (Seat* const seat : seats) seat->panel->draw(desk_);
     } else {
       draw_tabs(static_cast<std::size_t>(slot), seats);
@@ -263,12 +275,19 @@ void Gui::draw_help() const {
       ImGui::SameLine(ImGui::GetFontSize() * 11);
       ImGui::TextUnformatted(does);
     };
+    // closer together where there are too many lines for the window
+    const float lines = static_cast<float>(hotkeys().size()) + 7;
+    const float high = ImGui::GetTextLineHeight();
+    ImVec2 spacing = ImGui::GetStyle().ItemSpacing;
+    spacing.y = std::clamp((size.y - 16 - 2 * ImGui::GetStyle().WindowPadding.y) / lines - high, 0.0F, spacing.y);
+    ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, spacing);
     for (const Hotkey& hotkey : hotkeys()) line(hotkey.shown, hotkey.does);
     ImGui::Separator();
     line("drag", "turn the view; Shift: shift it; wheel: nearer, further");
     line("a part", "click: choose; twice: follow; drag: pull; Ctrl: push");
     line("drag a bar", "set a value; Ctrl and click: type it; right click: copy its address");
     line("Tab, arrows, Enter", "go about and set values by keys");
+    ImGui::PopStyleVar();
   }
   ImGui::End();
 }
@@ -287,6 +306,19 @@ void Gui::draw_mark(const Desk::Mark& mark) const {
   list.AddRectFilled({at.x - 5 * s, at.y - 3 * s}, {at.x + size.x + 5 * s, at.y + size.y + 3 * s},
                      packed(Tone::panel, 0.9), 4 * s);
   list.AddText(at, packed(Tone::text), mark.name.c_str());
+}
+
+// over the picture, where it can't be overlooked
+void Gui::draw_panic() {
+  const auto x = static_cast<float>(layout_.free.x + layout_.free.width / 2);
+  const auto y = static_cast<float>(layout_.free.y + 8 * desk_.scale);
+  ImGui::SetNextWindowPos({x, y}, 0, {0.5F, 0});
+  if (ImGui::Begin(
+          "##panic", nullptr,
+          kAbove | ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoInputs | ImGuiWindowFlags_NoFocusOnAppearing))
+    ImGui::TextUnformatted("PANIC: everything comes to rest\nCtrl+. once more: the show goes on");
+  desk_.names.note("panic.banner");
+  ImGui::End();
 }
 
 void Gui::draw_notice() const {

@@ -79,6 +79,7 @@ class Gui {
   void draw_tabs(std::size_t slot, const std::vector<Seat*>& seats);
   void draw_mark(const Desk::Mark& mark) const;
   void draw_help() const;
+  void draw_panic();
   void draw_notice() const;
 
   GuiOptions options_;

@@ -9,11 +9,16 @@ namespace {
 
 using A = HotkeyAction;
 constexpr KeyMods kCtrl{true, false, false};
+constexpr KeyMods kShift{false, true, false};
 constexpr KeyMods kCtrlShift{true, true, false};
 
 constexpr std::array kHotkeys = {
+    Hotkey{{GuiKey::period, kCtrl}, A::panic, "Ctrl+.", "panic: all comes to rest; again: the show goes on", true},
     Hotkey{{GuiKey::space, {}}, A::play_pause, "Space", "play, pause"},
     Hotkey{{GuiKey::period, {}}, A::step, ".", "one tick"},
+    Hotkey{{GuiKey::comma, {}}, A::step_back, ",", "one tick back"},
+    Hotkey{{GuiKey::comma, kShift}, A::rewind, "Shift+,", "two seconds back"},
+    Hotkey{{GuiKey::r, kCtrl}, A::record, "Ctrl+R", "record a take, from the scene's start; end it"},
     Hotkey{{GuiKey::backspace, kCtrl}, A::reset, "Ctrl+Backspace", "the scene from its start", true},
     Hotkey{{GuiKey::digit_1, {}}, A::recall, "1 .. 8", "recall a preset"},
     Hotkey{{GuiKey::z, kCtrl}, A::undo, "Ctrl+Z", "undo an edit"},

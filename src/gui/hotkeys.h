@@ -11,6 +11,10 @@ namespace limber {
 enum class HotkeyAction : std::uint8_t {
   play_pause,
   step,
+  step_back,
+  rewind,
+  record,
+  panic,
   reset,
   hide,
   help,

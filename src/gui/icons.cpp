@@ -69,8 +69,22 @@ void draw_icon(Icon icon, float x, float y, float half, std::uint32_t color) {
       pen.box(0.18F, -0.75F, 0.65F, 0.75F);
       break;
     case Icon::step:
-      pen.triangle(pen.at(-0.75F, -0.75F), pen.at(0.45F, 0), pen.at(-0.75F, 0.75F));
-      pen.box(0.5F, -0.75F, 0.75F, 0.75F);
+      pen.box(-0.8F, -0.75F, -0.5F, 0.75F);
+      pen.triangle(pen.at(-0.3F, -0.75F), pen.at(0.85F, 0), pen.at(-0.3F, 0.75F));
+      break;
+    case Icon::step_back:
+      pen.box(0.5F, -0.75F, 0.8F, 0.75F);
+      pen.triangle(pen.at(0.3F, -0.75F), pen.at(-0.85F, 0), pen.at(0.3F, 0.75F));
+      break;
+    case Icon::rewind:
+      pen.triangle(pen.at(-0.02F, -0.7F), pen.at(-0.95F, 0), pen.at(-0.02F, 0.7F));
+      pen.triangle(pen.at(0.93F, -0.7F), pen.at(0, 0), pen.at(0.93F, 0.7F));
+      break;
+    case Icon::record:
+      pen.list.AddCircleFilled(pen.middle, half * 0.85F, color, 20);
+      break;
+    case Icon::stop:
+      pen.box(-0.75F, -0.75F, 0.75F, 0.75F);
       break;
     case Icon::star:
     case Icon::star_empty:

@@ -8,8 +8,8 @@ namespace limber {
 namespace {
 
 constexpr double kGap = 8;
-constexpr double kTop = 44;
-constexpr double kTopCompact = 68;  // two rows
+constexpr double kTop = 66;         // two rows
+constexpr double kTopCompact = 94;  // three
 constexpr double kLeastForSides = 520;
 constexpr double kLeastForBelow = 420;
 constexpr double kLeastForTop = 300;

@@ -6,6 +6,7 @@
 #include <imgui.h>
 
 #include "gui/panel.h"
+#include "gui/samples.h"
 #include "gui/theme.h"
 
 namespace limber {
@@ -34,11 +35,10 @@ class PerformancePanel : public Panel {
     last_ = desk.now;
     if (!ticked) return;
     const double total = last_->times.total() * 1e3;
-    ticks_[next_++ % kGraphTicks] = static_cast<float>(total);
+    const bool first = ticks_.empty();
+    ticks_.add(last_->tick, {total});
     most_ = std::max(most_, total);
-    const auto blend = [&](double& mean, double value) {
-      mean = next_ == 1 ? value : mean + kGraphSmooth * (value - mean);
-    };
+    const auto blend = [&](double& mean, double value) { mean = first ? value : mean + kGraphSmooth * (value - mean); };
     blend(tick_, total);
     for (std::size_t i = 0; i < kPhases.size(); i++) blend(means_[i], last_->times.*kPhases[i].time * 1e3);
   }
@@ -83,9 +83,10 @@ class PerformancePanel : public Panel {
     ImDrawList& list = *ImGui::GetWindowDrawList();
     const ImVec2 to{from.x + width, from.y + height};
     list.AddRectFilled(from, to, packed(Tone::field), ImGui::GetStyle().FrameRounding);
-    const std::size_t count = std::min(next_, kGraphTicks);
+    const std::size_t count = ticks_.size();
+    const auto taken = [&](std::size_t i) { return static_cast<float>(ticks_[i][0]); };
     float high = static_cast<float>(budget) * 0.25F;
-    for (std::size_t i = 0; i < count; i++) high = std::max(high, ticks_[i]);
+    for (std::size_t i = 0; i < count; i++) high = std::max(high, taken(i));
     const float top = std::max(high * 1.2F, 1e-6F);
     const auto y = [&](float v) { return to.y - std::min(v / top, 1.0F) * height; };
     list.PushClipRect(from, to, true);
@@ -93,8 +94,7 @@ class PerformancePanel : public Panel {
       list.AddLine({from.x, y(static_cast<float>(budget))}, {to.x, y(static_cast<float>(budget))}, packed(Tone::red));
     ImVec2 points[kGraphTicks];
     for (std::size_t i = 0; i < count; i++) {
-      const std::size_t at = (next_ - count + i) % kGraphTicks;
-      points[i] = {from.x + width * static_cast<float>(i) / static_cast<float>(kGraphTicks - 1), y(ticks_[at])};
+      points[i] = {from.x + width * static_cast<float>(i) / static_cast<float>(kGraphTicks - 1), y(taken(i))};
     }
     list.AddPolyline(points, static_cast<int>(count), packed(Tone::accent), 0, 1.4F);
     list.PopClipRect();
@@ -118,8 +118,7 @@ class PerformancePanel : public Panel {
   }
 
   std::shared_ptr<const Snapshot> last_;
-  std::array<float, kGraphTicks> ticks_{};
-  std::size_t next_ = 0;
+  Samples ticks_{kGraphTicks};
   double tick_ = 0;
   double most_ = 0;
   std::array<double, kPhases.size()> means_{};

@@ -10,6 +10,7 @@
 #include "gui/icons.h"
 #include "gui/number_bar.h"
 #include "gui/panel.h"
+#include "gui/samples.h"
 #include "gui/theme.h"
 
 namespace limber {
@@ -40,8 +41,7 @@ class PlotsPanel : public Panel {
       Series& series = series_[path];
       series.width = std::min<std::size_t>(at->place.row->width, kMostPlotted);
       series.unit = at->place.row->unit;
-      series.samples.push_back(values);
-      if (series.samples.size() > kPlotSamples) series.samples.erase(series.samples.begin());
+      series.samples.add(tick_, values);
     }
   }
 
@@ -60,7 +60,7 @@ class PlotsPanel : public Panel {
   struct Series {
     std::size_t width = 1;
     std::string unit;
-    std::vector<HandValues::Values> samples;
+    Samples samples{kPlotSamples};
   };
 
   // false: it is to go
@@ -73,7 +73,7 @@ class PlotsPanel : public Panel {
     std::string words = path;
     if (!series.samples.empty()) {
       for (std::size_t i = 0; i < series.width; i++)
-        words += fmt::format("  {}", shown_number(series.samples.back()[i], false));
+        words += fmt::format("  {}", shown_number(series.samples[series.samples.size() - 1][i], false));
       words += " " + series.unit;
     }
     ImGui::TextUnformatted(words.c_str());
@@ -91,12 +91,12 @@ class PlotsPanel : public Panel {
     const ImVec2 to{from.x + width, from.y + height};
     list.AddRectFilled(from, to, packed(Tone::field), ImGui::GetStyle().FrameRounding);
     if (series.samples.empty()) return;
-    double low = series.samples.front()[0];
+    double low = series.samples[0][0];
     double high = low;
-    for (const HandValues::Values& values : series.samples) {
+    for (std::size_t k = 0; k < series.samples.size(); k++) {
       for (std::size_t i = 0; i < series.width; i++) {
-        low = std::min(low, values[i]);
-        high = std::max(high, values[i]);
+        low = std::min(low, series.samples[k][i]);
+        high = std::max(high, series.samples[k][i]);
       }
     }
     const double span = std::max(high - low, 1e-9);

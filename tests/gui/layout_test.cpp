@@ -95,9 +95,25 @@ TEST_P(LayoutOfWidgets, NothingOverlapsOrIsCut) {
   }
 }
 
+TEST_P(LayoutOfWidgets, NorWhileThereIsAPanicATakeAndARefusal) {
+  const WindowSize size = GetParam();
+  PanelRig rig(kScene, size.width, size.height);
+  rig.scale = size.scale;
+  rig.show.send("/take/record", "a name that is as long as names are, and a bit longer");
+  rig.heard();
+  rig.click("transport.panic");
+  rig.click("transport.rewind");  // a take has just begun: there is no past
+  rig.move(0, 0);
+  rig.heard();
+  for (const char* const shown : {"panic.banner", "take.text", "refusal", "transport.past"})
+    EXPECT_TRUE(rig.sees(shown)) << shown;
+  expect_orderly(rig, size);
+}
+
 INSTANTIATE_TEST_SUITE_P(Sizes, LayoutOfWidgets,
-                         ::testing::Values(WindowSize{1600, 900, 1}, WindowSize{1280, 720, 1}, WindowSize{900, 600, 1},
-                                           WindowSize{1600, 900, 2}, WindowSize{3200, 1800, 2}));
+                         ::testing::Values(WindowSize{1600, 900, 1}, WindowSize{1280, 720, 1}, WindowSize{1200, 700, 1},
+                                           WindowSize{900, 600, 1}, WindowSize{1600, 900, 2},
+                                           WindowSize{3200, 1800, 2}));
 
 }  // namespace
 }  // namespace limber::gui_test

@@ -33,5 +33,69 @@ TEST(PanelTransport, SpaceIsALetterWhereOneTypes) {
   EXPECT_EQ(rig.read("/physics/sim/paused"), 1);
 }
 
+constexpr KeyMods kCtrl{true, false, false};
+constexpr KeyMods kShift{false, true, false};
+
+TEST(PanelTransport, PanicBringsToRestAndOnceMoreGoesOn) {
+  PanelRig rig;
+  rig.show.ticks(60);
+  EXPECT_FALSE(rig.sees("panic.banner"));
+  const PanelRect before = rig.where("transport.time");
+  rig.click("transport.panic");
+  rig.heard();
+  EXPECT_EQ(rig.read("/physics/sim/panicked"), 1);
+  EXPECT_TRUE(rig.sees("panic.banner"));
+  EXPECT_EQ(rig.gui->desk().notice, "panic: everything comes to rest");
+  EXPECT_EQ(rig.where("transport.time").x, before.x) << "nothing moves";
+  rig.click("transport.panic");
+  rig.heard();
+  EXPECT_EQ(rig.read("/physics/sim/panicked"), 0);
+  EXPECT_FALSE(rig.sees("panic.banner"));
+  EXPECT_EQ(rig.gui->desk().notice, "the panic is over");
+}
+
+TEST(PanelTransport, ThePanicKeyActsWhereOneTypesAndWhatTheFirstPressLeavesIsGoneBackTo) {
+  PanelRig rig;
+  rig.show.ticks(90);
+  rig.click("parameters.search");
+  rig.key(GuiKey::period, kCtrl);
+  EXPECT_EQ(rig.read("/physics/sim/panicked"), 1);
+  rig.show.ticks(30);
+  EXPECT_EQ(rig.read("/physics/sim/tick"), 120);
+  rig.key(GuiKey::period, kCtrl);
+  EXPECT_EQ(rig.read("/physics/sim/panicked"), 0);
+  EXPECT_LE(rig.read("/physics/sim/tick"), 90) << "the newest good moment is not behind the panic";
+  rig.key(GuiKey::f1);
+  rig.key(GuiKey::period, kCtrl);
+  EXPECT_EQ(rig.read("/physics/sim/panicked"), 1) << "hidden, too";
+  EXPECT_FALSE(rig.sees("panic.banner")) << "the picture stays clean then";
+}
+
+TEST(PanelTransport, KeysAndButtonsGoBackInTime) {
+  PanelRig rig;
+  rig.show.ticks(200);
+  rig.key(GuiKey::comma);
+  EXPECT_EQ(rig.read("/physics/sim/tick"), 199);
+  EXPECT_EQ(rig.read("/physics/sim/paused"), 1) << "a step back stands still";
+  rig.click("transport.step_back");
+  EXPECT_EQ(rig.read("/physics/sim/tick"), 198);
+  // three presses before the panel looks
+  InputEvent event;
+  event.kind = InputEvent::Kind::key;
+  event.key = GuiKey::comma;
+  for (int i = 0; i < 6; i++) {
+    event.down = i % 2 == 0;
+    rig.push(event);
+  }
+  rig.heard();
+  EXPECT_EQ(rig.read("/physics/sim/tick"), 195);
+  rig.key(GuiKey::comma, kShift);
+  EXPECT_EQ(rig.read("/physics/sim/tick"), 75) << "two seconds";
+  EXPECT_EQ(rig.gui->desk().refusal, "");
+  rig.click("transport.rewind");
+  EXPECT_EQ(rig.read("/physics/sim/tick"), 0);
+  EXPECT_NE(rig.gui->desk().notice.find("1.25 s back, no further"), std::string::npos) << rig.gui->desk().notice;
+}
+
 }  // namespace
 }  // namespace limber::gui_test

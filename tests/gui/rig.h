@@ -1,6 +1,7 @@
 // A panel without a window over an engine that plays a scene: hands by name, effects read back from the world.
 #pragma once
 
+#include <filesystem>
 #include <memory>
 #include <string>
 #include <utility>
@@ -39,6 +40,12 @@ class PanelRig {
     options.copy = [this](const std::string& text) { clipboard = text; };
     options.behavior_types = {"force", "torque"};
     gui = std::make_unique<Gui>(show.link, std::move(options));
+    heard();
+  }
+
+  /// The same over an engine of these options, such as one that replays a take.
+  explicit PanelRig(EngineOptions options) : file_(kScene), show(std::move(options)), width_(1600), height_(900) {
+    gui = std::make_unique<Gui>(show.link, headless());
     heard();
   }
 
@@ -160,6 +167,8 @@ class PanelRig {
     frames(2);
   }
 
+  /// Where the scene lies.
+  std::filesystem::path folder() const { return std::filesystem::path(file_.path()).parent_path(); }
   double read(const std::string& path, std::size_t index = 0) { return show.read(path, index); }
 
  private:
