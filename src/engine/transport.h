@@ -1,5 +1,5 @@
-// Transport and telemetry: the nodes /transport (play, pause, step, rewind, reset, panic) and /osc (what came in and was
-// lost). [sim]
+// Transport and telemetry: the nodes /transport (play, pause, step, rewind, reset, panic) and /osc (what came in and
+// was lost). [sim]
 #pragma once
 
 #include <cstdint>

@@ -92,7 +92,7 @@ end)
   const auto dragged = [&] { return running.out().find("rate 1.0") != std::string::npos; };
   for (int i = 0; i < 200 && !dragged(); i++) {
     display.xdotool(
-        {"mousemove", "1100", "159", "mousedown", "1", "mousemove", "1260", "159", "mouseup", "1", "sleep", "0.5"});
+        {"mousemove", "1100", "182", "mousedown", "1", "mousemove", "1260", "182", "mouseup", "1", "sleep", "0.5"});
     running.look();
   }
   ASSERT_TRUE(dragged()) << running.out();
