@@ -7,10 +7,12 @@ failed=0
 # the thread sanitizer takes the rooms where threads meet
 asan_leaves_out="architecture first_minutes long"
 tsan_takes="base engine osc console query"
-tsan_leaves_out_tests=PresetText.*  # of one thread
+# of one thread
+tsan_leaves_out_tests='PresetText.*:PanicButton.*:History.EveryBehavior*:History.WithMany*:History.StepsBack*:History.ItGoesAsFar*'
 # long predictions: the release build's runs test them; shorter tests take the same code through the address sanitizer
-asan_leaves_out_tests=PointGrid.EachPairOnce:JointRows.StopCfm*:Plots.AreTodays:Flock.Without*
+asan_leaves_out_tests=All/PointGridLanes.EachPairOnce/*:All/PointGridLanes.Finds*/0:JointRows.StopCfm*:Plots.AreTodays:Flock.Without*
 asan_leaves_out_tests+=:Scenes.ABehaviorOfAnArm*:Scenes.AGustBends*
+asan_leaves_out_tests+=:PanicButton.EveryShow*:History.EveryBehavior*:History.WithMany*:History.StepsBack*
 asan_leaves_out_tests+=:PresetText.AHundredMegabytes:Twins.MoveAlike/al*:Twins.MoveAlike/sep*:Twins.MoveAlike/r*:Twins.MoveAlike/vol*
 
 pass() { passed=$((passed + ${1:-1})); }
@@ -46,7 +48,7 @@ build() {
 }
 
 # rooms whose tests take longest: they begin first, so that no core waits for one of them at the end
-slow_rooms="script scenes sim"
+slow_rooms="engine script scenes sim"
 
 # begin_tests FOLDER ROOM...: runs test_ROOM of that build, one a core; each leaves a log, its exit code and its seconds
 begin_tests() {
