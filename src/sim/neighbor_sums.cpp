@@ -2,50 +2,41 @@
 #include "sim/neighbor_sums.h"
 
 #include <algorithm>
-#include <cstring>
 
 #if defined(__x86_64__)
 #include <immintrin.h>
 #endif
 
+#include "sim/lanes.h"
+
 namespace limber {
 
 namespace {
 
-using Four [[gnu::vector_size(16)]] = float;
-
-Four load_four(const float* v) {
-  Four lanes;
-  std::memcpy(&lanes, v, sizeof lanes);
-  return lanes;
-}
-
-void store_four(float* v, Four lanes) { std::memcpy(v, &lanes, sizeof lanes); }
-
 template <bool Motions>
 void add_by_four(std::uint32_t place, std::span<const std::uint32_t> found, const NeighborMotion* motions,
                  NeighborSum* sums) {
-  const Four one{0, 0, 0, 1}, two{0, 0, 0, 2};
+  const Lanes one{0, 0, 0, 1}, two{0, 0, 0, 2};
   const NeighborMotion& own = motions[place];
-  const Four at = load_four(own.position) - one;
-  const Four own_velocity = load_four(own.velocity), own_spin = load_four(own.spin);
+  const Lanes at = load(own.position) - one;
+  const Lanes own_velocity = load(own.velocity), own_spin = load(own.spin);
   NeighborSum& mine = sums[place];
-  Four offset = load_four(mine.offset), velocity = load_four(mine.velocity), spin = load_four(mine.spin);
+  Lanes offset = load(mine.offset), velocity = load(mine.velocity), spin = load(mine.spin);
   for (const std::uint32_t other : found) {
     const NeighborMotion& near = motions[other];
     NeighborSum& its = sums[other];
-    const Four r = load_four(near.position) - at;
+    const Lanes r = load(near.position) - at;
     offset += r;
-    store_four(its.offset, load_four(its.offset) - (r - two));
+    store(its.offset, load(its.offset) - (r - two));
     if constexpr (!Motions) continue;
-    velocity += load_four(near.velocity);
-    spin += load_four(near.spin);
-    store_four(its.velocity, load_four(its.velocity) + own_velocity);
-    store_four(its.spin, load_four(its.spin) + own_spin);
+    velocity += load(near.velocity);
+    spin += load(near.spin);
+    store(its.velocity, load(its.velocity) + own_velocity);
+    store(its.spin, load(its.spin) + own_spin);
   }
-  store_four(mine.offset, offset);
-  store_four(mine.velocity, velocity);
-  store_four(mine.spin, spin);
+  store(mine.offset, offset);
+  store(mine.velocity, velocity);
+  store(mine.spin, spin);
 }
 
 #if defined(__x86_64__)

@@ -3,26 +3,15 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstring>
 #include <optional>
 
 #include "sim/behavior_list.h"
+#include "sim/lanes.h"
 #include "sim/world.h"
 
 namespace limber {
 
 namespace {
-
-// a sum of vectors, one lane unused: the same on every processor, whatever its lanes are
-using Lanes [[gnu::vector_size(16)]] = float;
-
-Lanes load(const float* v) {
-  Lanes lanes;
-  std::memcpy(&lanes, v, sizeof lanes);
-  return lanes;
-}
-
-void store(float* v, Lanes lanes) { std::memcpy(v, &lanes, sizeof lanes); }
 
 // the unit vector times 1 − distance/most; zero where there is no direction
 Lanes pushed(const Lanes& r, float inverse_most) {

@@ -181,25 +181,29 @@ ball.angular_velocity = vec3(0, 0, 2)
 }
 
 // time begins anew in the show, and goes on in the file; the bodies are the same
-TEST(Export, AResetGoesOn) {
-  const Folder folder;
+// a ball that flies at 1 m/s, and a message from outside in mid-way
+std::string record_ball(const Folder& folder, int before, const Message& message, int after) {
   const std::string take = folder.path() + "/show.take";
-  {
-    EngineOptions options;
-    options.scene = folder.file("show.lua", R"(
+  EngineOptions options;
+  options.scene = folder.file("show.lua", R"(
 sim.gravity = vec3(0, 0, 0)
 sim:add_body("ball"):add_part("p", sim:add_sphere_shape("ball", 0.1)).linear_velocity = vec3(1, 0, 0)
 )");
-    options.record = take;
-    options.fast = true;
-    EngineLink link;
-    Engine engine(link, options);
-    ASSERT_TRUE(engine.start());
-    for (int i = 0; i < 30; i++) engine.tick();
-    link.inbox.push({{Message{"/transport/reset", {}}}, {Hand::osc, 0x7f000001, 4000}});
-    for (int i = 0; i < 20; i++) engine.tick();
-    engine.end_take();
-  }
+  options.record = take;
+  options.fast = true;
+  EngineLink link;
+  Engine engine(link, options);
+  EXPECT_TRUE(engine.start());
+  for (int i = 0; i < before; i++) engine.tick();
+  link.inbox.push({{message}, {Hand::osc, 0x7f000001, 4000}});
+  for (int i = 0; i < after; i++) engine.tick();
+  engine.end_take();
+  return take;
+}
+
+TEST(Export, AResetGoesOn) {
+  const Folder folder;
+  const std::string take = record_ball(folder, 30, {"/transport/reset", {}}, 20);
   const Ran ran = run({"export", take, "--format", "csv", "--rate", "40"});
   EXPECT_EQ(ran.code, 0) << ran.err;
   const auto table = table_of(folder.path() + "/show.csv");
@@ -218,23 +222,7 @@ sim:add_body("ball"):add_part("p", sim:add_sphere_shape("ball", 0.1)).linear_vel
 
 TEST(Export, TimeThatGoesBackIsOneFrame) {
   const Folder folder;
-  const std::string take = folder.path() + "/show.take";
-  {
-    EngineOptions options;
-    options.scene = folder.file("show.lua", R"(
-sim.gravity = vec3(0, 0, 0)
-sim:add_body("ball"):add_part("p", sim:add_sphere_shape("ball", 0.1)).linear_velocity = vec3(1, 0, 0)
-)");
-    options.record = take;
-    options.fast = true;
-    EngineLink link;
-    Engine engine(link, options);
-    ASSERT_TRUE(engine.start());
-    for (int i = 0; i < 90; i++) engine.tick();
-    link.inbox.push({{Message{"/transport/rewind", {Arg::of(0.25)}}}, {Hand::osc, 0x7f000001, 4000}});
-    for (int i = 0; i < 30; i++) engine.tick();
-    engine.end_take();
-  }
+  const std::string take = record_ball(folder, 90, {"/transport/rewind", {Arg::of(0.25)}}, 30);
   const Ran ran = run({"export", take, "--format", "csv", "--rate", "60"});
   EXPECT_EQ(ran.code, 0) << ran.err;
   const auto table = table_of(folder.path() + "/show.csv");
