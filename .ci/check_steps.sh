@@ -7,6 +7,8 @@ failed=0
 # the thread sanitizer takes the rooms where threads meet
 asan_leaves_out="architecture first_minutes long"
 tsan_takes="base engine osc console query"
+# and all of them at once in a window
+tsan_takes_of_app=Window.AFloodReloadsAndHandsTogether
 # of one thread
 tsan_leaves_out_tests='PresetText.*:PanicButton.*:History.EveryBehavior*:History.WithMany*:History.StepsBack*:History.ItGoesAsFar*'
 # long predictions: the release build's runs test them; shorter tests take the same code through the address sanitizer
@@ -47,22 +49,38 @@ build() {
   fi
 }
 
-# rooms whose tests take longest: they begin first, so that no core waits for one of them at the end
+# rooms whose tests take longest: they begin first, in two halves, so that no core waits for one of them at the end
 slow_rooms="engine script scenes sim"
 
-# begin_tests FOLDER ROOM...: runs test_ROOM of that build, one a core; each leaves a log, its exit code and its seconds
+# begin_tests FOLDER ROOM...: runs test_ROOM of that build, one a core; each part leaves a log, and its exit code and
+# seconds
 begin_tests() {
-  local folder=$1 room first=()
+  local folder=$1 room first=() rest=()
   shift
-  for room in $slow_rooms; do case " $* " in *" $room "*) first+=("$room") ;; esac done
-  for room in "$@"; do case " $slow_rooms " in *" $room "*) ;; *) first+=("$room") ;; esac done
+  for room in "$@"; do
+    case " $slow_rooms " in *" $room "*) first+=("$room 0 2" "$room 1 2") ;; *) rest+=("$room 0 1") ;; esac
+    rm -f "build/check/${folder//\//_}_test_$room".*.end
+  done
   export -f fixed_addresses
-  printf '%s\n' "${first[@]}" | test_folder=$folder test_without=${test_without-} test_seconds=${test_seconds:-900} xargs -P "$(jobs)" -I ROOM bash -c '
-    log=build/check/${test_folder//\//_}_test_ROOM.log
+  printf '%s\n' "${first[@]}" "${rest[@]}" | grep . | test_folder=$folder test_without=${test_without-} \
+    test_only=${test_only-} test_seconds=${test_seconds:-900} xargs -P "$(jobs)" -L 1 bash -c '
+    log=build/check/${test_folder//\//_}_test_$0.$1.log
     begin=$SECONDS
-    fixed_addresses timeout -k 10 "$test_seconds" "$test_folder/test_ROOM" --gtest_color=no \
-      --gtest_filter="-$test_without" >"$log" 2>&1
+    GTEST_SHARD_INDEX=$1 GTEST_TOTAL_SHARDS=$2 fixed_addresses timeout -k 10 "$test_seconds" \
+      "$test_folder/test_$0" --gtest_color=no --gtest_filter="$test_only-$test_without" >"$log" 2>&1
     echo "$? $((SECONDS - begin))" >"${log%.log}.end"'
+}
+
+# gather_parts LOG: one log of a program's parts, those that went wrong at its end; sets rc and seconds
+gather_parts() {
+  local end code took good=() bad=()
+  rc=0 seconds=0
+  for end in "${1%.log}".*.end; do
+    read -r code took <"$end" || return
+    if [ "$code" = 0 ]; then good+=("${end%.end}.log"); else bad+=("${end%.end}.log") rc=$code; fi
+    seconds=$((took > seconds ? took : seconds))
+  done
+  cat "${good[@]}" "${bad[@]}" >"$1"
 }
 
 # run_tests FOLDER ROOM...: runs those tests and counts them; a skipped one counts as failed
@@ -76,7 +94,7 @@ run_tests() {
   begin_tests "$folder" "${built[@]}"
   for room in "${built[@]}"; do
     log=build/check/${folder//\//_}_test_$room.log
-    read -r rc seconds <"${log%.log}.end" || { fail "$folder/test_$room did not run"; continue; }
+    gather_parts "$log" || { fail "$folder/test_$room did not run"; continue; }
     ok=$(grep -c '\[       OK \]' "$log")
     bad=$(grep -cE '\[  (FAILED  |SKIPPED )\] .* \([0-9]+ ms\)$' "$log")
     pass "$ok"
@@ -112,7 +130,7 @@ step_release() {
 sanitizer_options() {
   export ASAN_OPTIONS=strict_string_checks=1:detect_stack_use_after_return=0:allocator_may_return_null=1
   export UBSAN_OPTIONS=print_stacktrace=1
-  export TSAN_OPTIONS=halt_on_error=1:second_deadlock_stack=1
+  export TSAN_OPTIONS=halt_on_error=1:second_deadlock_stack=1:suppressions=$PWD/tests/tsan.supp
   export ASAN_SYMBOLIZER_PATH=/usr/bin/llvm-symbolizer-14
 }
 
@@ -129,23 +147,33 @@ step_tsan() {
   for room in $tsan_takes; do
     case " $(test_rooms)" in *" $room "*) rooms+=("$room") ;; esac
   done
-  build build/tsan "${rooms[@]/#/test_}" && test_without=$tsan_leaves_out_tests run_tests build/tsan "${rooms[@]}"
+  build build/tsan "${rooms[@]/#/test_}" test_app || return
+  test_without=$tsan_leaves_out_tests run_tests build/tsan "${rooms[@]}"
+  test_only=$tsan_takes_of_app run_tests build/tsan app
 }
 
-# fuzz_target NAME ARGUMENTS...: replays the corpus, then looks for more; what it finds stays in build/check/fuzz.
-# Leaks are looked for once, at the end: a world that lives on grows, and libFuzzer would search it after every input
-fuzz_target() {
+# run_fuzz NAME ARGUMENTS...: replays the corpus, then looks for more; what it finds stays in build/check/fuzz. Leaves a
+# log and its exit code. Leaks are looked for once, at the end: a world that lives on grows, and libFuzzer would search
+# it after every input
+run_fuzz() {
   local name=$1 short=${1%_fuzz} log=build/check/$1.log found=build/check/fuzz/$1 seeds=() dictionary=()
   shift
   mkdir -p "$found"
   [ ! -d "tests/fuzz/corpus/$short" ] || seeds=("tests/fuzz/corpus/$short")
   [ ! -e "tests/fuzz/$short.dict" ] || dictionary=("-dict=tests/fuzz/$short.dict")
-  if fixed_addresses "build/asan/$name" -timeout=20 -rss_limit_mb=4096 -detect_leaks=0 \
-    -artifact_prefix="$found/bad-" -print_final_stats=1 "${dictionary[@]}" "$@" "${seeds[@]}" >"$log" 2>&1; then
+  fixed_addresses "build/asan/$name" -timeout=20 -rss_limit_mb=4096 -detect_leaks=0 \
+    -artifact_prefix="$found/bad-" -print_final_stats=1 "${dictionary[@]}" "$@" "${seeds[@]}" >"$log" 2>&1
+  echo $? >"${log%.log}.end"
+}
+
+count_fuzz() {
+  local log=build/check/$1.log rc=none
+  read -r rc <"${log%.log}.end"
+  if [ "$rc" = 0 ]; then
     pass
-    say "$name: $(sed -n 's/^stat::number_of_executed_units: *//p' "$log") inputs without a fault"
+    say "$1: $(sed -n 's/^stat::number_of_executed_units: *//p' "$log") inputs without a fault"
   else
-    fail "$name (the input is in $found)" "$log"
+    fail "$1 (the input is in build/check/fuzz/$1)" "$log"
   fi
 }
 
@@ -157,17 +185,20 @@ fuzz_runs() { case $1 in osc*) echo 250000 ;; script*) echo 1000 ;; *) echo 2000
 # as alike as it can be: one seed, a number of runs, nothing from the runs before; the time is a cap for a slow machine
 # alone. (In a live world Lua's collector stops by the clock, so the OSC target's runs differ a little.)
 step_fuzz() {
-  local names name fresh
+  local names name
   sanitizer_options
   names=$(fuzz_names)
   [ -n "$names" ] || { say "no fuzz targets"; return; }
   [ -e build/asan/build.ninja ] || configure asan build/asan
   build build/asan $names || return
-  for name in $names; do
-    fresh=build/check/fuzz_new/$name  # libFuzzer writes to the first folder that it is given
-    rm -rf "$fresh" && mkdir -p "$fresh"
-    fuzz_target "$name" -seed=1 -runs="$(fuzz_runs "$name")" -max_total_time=300 "$fresh"
-  done
+  # libFuzzer writes to the first folder that it is given
+  rm -rf build/check/fuzz_new
+  (cd build/check && rm -f ./*_fuzz.end)
+  export -f fixed_addresses run_fuzz fuzz_runs
+  printf '%s\n' $names | xargs -P "$(jobs)" -I NAME bash -c '
+    mkdir -p build/check/fuzz_new/NAME
+    run_fuzz NAME -seed=1 -runs="$(fuzz_runs NAME)" -max_total_time=300 build/check/fuzz_new/NAME'
+  for name in $names; do count_fuzz "$name"; done
 }
 
 # full fuzzing, and the floods and soaks of tests/long
@@ -176,9 +207,10 @@ step_long() {
   say "--long: figures go to docs/evidence.md, with this commit: $(git rev-parse --short=10 HEAD)"
   for name in $(fuzz_names); do
     case $name in
-      osc*) fuzz_target "$name" -runs=10000000 "build/check/fuzz/$name" ;;
-      *) fuzz_target "$name" -max_total_time=$((minutes * 60)) "build/check/fuzz/$name" ;;
+      osc*) run_fuzz "$name" -runs=10000000 "build/check/fuzz/$name" ;;
+      *) run_fuzz "$name" -max_total_time=$((minutes * 60)) "build/check/fuzz/$name" ;;
     esac
+    count_fuzz "$name"
   done
   case " $(test_rooms)" in *" long "*) test_seconds=14400 run_tests build long ;; esac
   scripts tests/long

@@ -23,5 +23,6 @@ void main() {
   v_ambient = ambient;
   v_specular = extent.w;
   gl_Position = view_proj * vec4(at, 1.0);
-  gl_ClipDistance[0] = at.z - tone.z;
+  // in the mirror alone; some drivers clip by it even where it is switched off
+  gl_ClipDistance[0] = eye.w > 0.5 ? at.z - tone.z : 1.0;
 }

@@ -461,7 +461,7 @@ function shape_:add_child(child, position, rotation) end
 ---@field substeps integer # 1 .. 1000, default 4. Equal internal steps that a tick is made of.
 ---@field solver_iterations integer # 1 .. 10000, default 50. Rounds of the contact and joint solver in each internal step.
 ---@field panic_motors "held"|"limp" # default held. What motors do while a panic holds: stay where they are, with their own strength, or nothing.
----@field solver "iterative" # default iterative. How joints and contacts are solved.
+---@field solver "iterative"|"direct" # default direct. How joints are solved: in rounds with the contacts, or exactly, as trees.
 ---@field seed integer # 0 .. 9007199254740992. What every random draw derives from: a behaviour's at once, a scene's from the next start.
 ---@field paused boolean # Time stands still; commands and OSC are still answered.
 ---@field speed number # × real time, 0.01 .. 100. How fast simulated time runs when it is paced.
@@ -469,6 +469,7 @@ function shape_:add_child(child, position, rotation) end
 ---@field time number # read-only, s. Simulated time.
 ---@field tick integer # read-only. Ticks since the start.
 ---@field panicked boolean # read-only. A panic holds: everything comes to rest.
+---@field solver_fallbacks integer # read-only. Steps of islands that the direct solver left to the iterative one, since the start.
 sim = {}
 
 ---A body from a URDF file.
@@ -669,7 +670,12 @@ function camera_:follow(thing) end
 ---@field grid number # 0 .. 10, default 1. How plain the lines on the floor are, a metre apart.
 ---@field mirror number # 0 .. 3, default 1. How much the floor mirrors; the studio's does not.
 ---@field floor boolean # default true. A floor at height 0, where no plane of the scene is one.
+---@field overlay boolean # Joint axes and limits, centres of mass, forces, contacts and targets over the picture.
 local look_ = {}
+
+---Takes a style by its number (0: stage, 1: studio), unless the scene says which one it has.
+---@param style integer
+function look_:prefer(style) end
 
 -- A scene's own parameters and state, and OSC.
 
@@ -797,6 +803,7 @@ function behavior(definition) end
 ---What the functions of a behaviour get: its parameters by their names, and these.
 ---@class behavior_self
 ---@field active boolean
+---@field place integer # Which one it is, from 1, of those that act on its body in a tick.
 ---@field name string # read-only.
 ---@field alive boolean # read-only. Whether it is still attached.
 ---@field type string # read-only.
@@ -849,6 +856,7 @@ function behavior_self_:neighbor_push(part, min_dist, max_dist) end
 ---@field type string # read-only.
 ---@field body body # read-only.
 ---@field active boolean # default true. Setting it, to whatever, lets one that failed try again.
+---@field place integer # Which one it is, from 1, of those that act on its body in a tick; setting it puts it there.
 ---@field error? string # read-only. Why it rests although it is active.
 ---@field time number # read-only, µs. What the last tick spent on it.
 ---@field parts part_list # read-only.
@@ -873,6 +881,7 @@ function behavior_:remove() end
 ---@field alive boolean # read-only.
 ---@field type string # read-only.
 ---@field active boolean # default true. Setting it sets that of every member.
+---@field place integer # Which one it is, from 1, of all names of behaviours; setting it puts it there.
 ---@field time number # read-only, µs. What the last tick spent on all of it.
 ---@field [string] any # Its parameters: what is written goes to every member.
 local behavior_group_ = {}

@@ -18,8 +18,10 @@
 #include "app/bench_preset.h"
 #include "app/bench_query.h"
 #include "app/bench_reload.h"
+#include "app/bench_solver.h"
 #include "app/bench_spawn.h"
 #include "app/bench_take.h"
+#include "app/bench_threads.h"
 #include "app/exit_code.h"
 #include "base/build_info.h"
 #include "base/text.h"
@@ -37,11 +39,13 @@ Json run_arms(const BenchOptions& options) {
                     options.compare_raw);
 }
 
+template <bool Direct>
 Json run_arm_quality(const BenchOptions& options) {
   ArmScene scene = bench_arm_scene(1);
   scene.step = 1.0 / 60;
   scene.substeps = 1;
   scene.hanging = true;
+  scene.direct = Direct;
   return bench_arms(scene, 60, options.ticks > 0 ? options.ticks : 360, options.compare_raw);
 }
 
@@ -49,6 +53,16 @@ template <int Bodies>
 Json run_flock(const BenchOptions& options) {
   return bench_flock(Bodies, options);
 }
+
+template <int Arms, int Ticks>
+Json run_direct_arms(const BenchOptions& options) {
+  return bench_arms(direct_arm_scene(Arms), std::min(30, Ticks), options.ticks > 0 ? options.ticks : Ticks,
+                    options.compare_raw);
+}
+
+Json run_solver(const BenchOptions& options) { return bench_solver(options.ticks); }
+Json run_swarm(const BenchOptions& options) { return bench_swarm(options.ticks); }
+Json run_pile(const BenchOptions& options) { return bench_pile(options.ticks); }
 
 std::string cpu_name() {
   std::ifstream info("/proc/cpuinfo");
@@ -108,7 +122,14 @@ const std::vector<BenchScene>& bench_scenes() {
       {"arms-100", "100 such arms", &run_arms<100, 80>},
       {"arms-1000", "1000 such arms", &run_arms<1000, 16>},
       {"arm-quality", "one arm hanging, one internal step of 1/60 s: how far joints part and servos miss",
-       &run_arm_quality},
+       &run_arm_quality<false>},
+      {"arm-direct", "the same with the direct solver", &run_arm_quality<true>},
+      {"arms-100-direct", "100 arms, direct solver, one internal step of 1/60 s", &run_direct_arms<100, 80>},
+      {"arms-1000-direct", "1000 arms, direct solver, one internal step of 1/60 s", &run_direct_arms<1000, 16>},
+      {"solver", "arms, trees, legs and random trees: stock Bullet beside the direct solver, 1/60 s", &run_solver},
+      {"swarm-300", "300 six-part creatures that press on each other: stock Bullet beside ours", &run_swarm},
+      {"pile-2000", "2000 boxes in a pile, the same", &run_pile},
+      {"threads", "100 and 1000 arms on two threads beside one, in pairs", &bench_threads},
       {"flock-1k", "1000 bodies with 30 neighbours each: cohesion and alignment", &run_flock<1000>},
       {"flock-10k", "10 000 such bodies", &run_flock<10000>},
       {"flock-100k", "100 000 such bodies", &run_flock<100000>},

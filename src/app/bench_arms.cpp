@@ -16,6 +16,12 @@ namespace limber {
 
 namespace {
 
+EngineOptions options_with(int threads) {
+  EngineOptions options;
+  options.threads = threads;
+  return options;
+}
+
 using Json = nlohmann::ordered_json;
 
 constexpr int kRound = 4;       // ticks of one side before it is the other's turn
@@ -125,13 +131,22 @@ ArmScene bench_arm_scene(int arms) {
   return scene;
 }
 
-BenchArms::BenchArms(const ArmScene& scene) : scene_(scene), engine_(link_, EngineOptions{}) {
+ArmScene direct_arm_scene(int arms) {
+  ArmScene scene = bench_arm_scene(arms);
+  scene.step = 1.0 / 60;
+  scene.substeps = 1;
+  scene.direct = true;
+  return scene;
+}
+
+BenchArms::BenchArms(const ArmScene& scene, int threads) : scene_(scene), engine_(link_, options_with(threads)) {
   LIMBER_CHECK(engine_.start().ok());
   World& world = engine_.world();
   heap_when_empty_ = heap_bytes();
   set(world.store(), world.id(), World::table(), "timestep", {scene.step * scene.substeps});
   set(world.store(), world.id(), World::table(), "substeps", {static_cast<double>(scene.substeps)});
   set(world.store(), world.id(), World::table(), "solver_iterations", {static_cast<double>(scene.solver_iterations)});
+  set(world.store(), world.id(), World::table(), "solver", {scene.direct ? 1.0 : 0.0});
   ShapeModel box;
   box.size = scene.size;
   ShapeModel plane;

@@ -15,7 +15,7 @@ namespace limber {
 /// The same arms as RawLoop's, through the world's own doors. [sim]
 class BenchArms {
  public:
-  explicit BenchArms(const ArmScene& scene);
+  explicit BenchArms(const ArmScene& scene, int threads = 1);
   BenchArms(const BenchArms&) = delete;
   BenchArms& operator=(const BenchArms&) = delete;
 
@@ -45,6 +45,8 @@ class BenchArms {
 
 /// The scene of so many arms: 1/60 s, 4 substeps, 10 solver iterations.
 ArmScene bench_arm_scene(int arms);
+/// The same with the direct solver, which needs one internal step a tick alone.
+ArmScene direct_arm_scene(int arms);
 
 /// Ticks both (raw where it is wanted), interleaved, and gives the figures.
 nlohmann::ordered_json bench_arms(const ArmScene& scene, int warm_ticks, int ticks, bool compare_raw);

@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <array>
 #include <filesystem>
+#include <utility>
 
 namespace limber {
 
@@ -39,22 +40,19 @@ FileWatch::~FileWatch() {
 }
 
 void FileWatch::watch(const std::vector<SourceFile>& files, Time now) {
-  std::map<std::string, FileStamp> wanted;
+  const std::map<std::string, FileStamp> before = std::exchange(files_, {});
+  for (const SourceFile& file : files) files_[file.path];
+  arm();  // before they are read: no save falls between the two
   bool differs = false;
   for (const SourceFile& file : files) {
-    const auto known = files_.find(file.path);
-    if (known != files_.end()) {
-      wanted.insert(*known);
-      continue;
-    }
-    const FileStamp stamp(file.path);
-    const bool other = file.content && stamp.content() != *file.content;
-    differs |= other;
+    FileStamp& stamp = files_[file.path];
+    const auto known = before.find(file.path);
+    stamp = known != before.end() ? known->second : FileStamp(file.path);
+    if (known != before.end() || !file.content || stamp.content() == *file.content) continue;
     // one that was changed since it was read is like none
-    wanted[file.path] = other ? FileStamp() : stamp;
+    stamp = FileStamp();
+    differs = true;
   }
-  files_ = std::move(wanted);
-  arm();
   if (differs) settle_at_ = now + kQuiet;
   if (way_ == Way::polling && !next_look_) next_look_ = now + kLook;
 }

@@ -29,6 +29,7 @@
 #include "app/send.h"
 #include "app/take.h"
 #include "base/build_info.h"
+#include "base/team.h"
 #include "base/text.h"
 
 namespace limber {
@@ -91,6 +92,10 @@ CLI::App* add_play(CLI::App& app, PlayOptions& o) {
   CLI::Option* seed = play->add_option("--seed", o.seed, "seed of everything random; wins over sim.seed of the scene")
                           ->type_name("N")
                           ->check(whole_number());
+  play->add_option("--threads", o.threads,
+                   "so many threads solve bodies that don't touch each other, side by side; the result is the same")
+      ->type_name("N")
+      ->check(CLI::Range(1, Team::kMost));
   CLI::Option* sets = play->add_option("--set", o.sets, "set a value after the scene ran; a path or the seed's address")
                           ->type_name("PATH=VALUE")
                           ->allow_extra_args(false);

@@ -93,6 +93,7 @@ Result<EngineOptions> parse_engine(const PlayOptions& options, const std::string
   engine.scene_options.seed = options.seed;
   engine.fast = options.fast;
   engine.strict = options.strict;
+  engine.threads = options.threads;
   engine.ticks = options.ticks;
   engine.duration = options.duration;
   engine.preset = options.preset;
@@ -216,7 +217,7 @@ int finish(const PlayOptions& options, Engine& engine, bool interrupted) {
     fmt::print("hash {:016x} tick {}\n", engine.state_hash(), engine.world().tick());
     std::fflush(stdout);
   }
-  if (engine.replays()) {
+  if (!options.replay.empty()) {
     const TakeVerdict verdict = engine.verdict();
     fmt::print(stderr, "limber: {}\n", text_of(verdict));
     if ((verdict.parted && !options.current_scripts) || !verdict.damage.empty()) return kInput;
@@ -250,8 +251,9 @@ Result<void> open_ports(const EngineLink& link, const OscOptions& osc, const Que
   return {};
 }
 
-bool may_open_window(const PlayOptions& options) {
-  return !options.fast && !options.picture.headless && Window::has_display();
+// in a window an empty stage can wait until its scene is mended; nobody mends a take
+bool may_wait(const PlayOptions& options) {
+  return options.replay.empty() && !options.fast && !options.picture.headless && Window::has_display();
 }
 
 // the window, or null and why not
@@ -302,7 +304,7 @@ int play_scene(const PlayOptions& options, EngineOptions engine_options, const O
     while (!show.started()) {
       if (listen(signals) == Heard::end) leave("ended while the scene was being read");
     }
-    if (!show.result() && !may_open_window(options)) return give_up(kInput, show.result().error());
+    if (!show.result() && !may_wait(options)) return give_up(kInput, show.result().error());
     if (const Result<void> open = open_ports(link, osc, query_wish, network, query); !open)
       return give_up(kMachine, open.error());
     if (!options.fast) open_console(console);
@@ -326,9 +328,25 @@ int play_scene(const PlayOptions& options, EngineOptions engine_options, const O
   return close(interrupted);
 }
 
+// what was asked for and has no meaning for stills and films
+std::string left_aside(const PlayOptions& options) {
+  std::string names;
+  const auto add = [&](bool given, const char* name) {
+    if (given) names += fmt::format("{}{}", names.empty() ? "" : ", ", name);
+  };
+  add(!options.osc_in.empty() && options.osc_in != "off", "--osc-in");
+  add(!options.osc_out.empty() && options.osc_out.front() != "off", "--osc-out");
+  add(!options.query.empty() && options.query != "off", "--query");
+  add(options.watch, "--watch");
+  return names;
+}
+
 // a still or a film: time goes as fast as it is drawn, and nobody comes in from outside
 int render_scene(const PlayOptions& options, EngineOptions engine_options, const sigset_t& signals) {
   EngineLink link;
+  if (const std::string aside = left_aside(options); !aside.empty())
+    fmt::print(stderr, "limber: stills and films hear and send nothing: {} {} left aside\n", aside,
+               aside.find(',') == std::string::npos ? "is" : "are");
   const std::optional<double> duration = engine_options.duration;
   Engine engine(link, std::move(engine_options));
   if (const Result<void> started = engine.start(); !started) return fail(kInput, started.error());

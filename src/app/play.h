@@ -20,6 +20,7 @@ struct PlayOptions {
   std::optional<std::uint64_t> ticks;
   std::optional<double> duration;
   std::optional<std::uint64_t> seed;
+  int threads = 1;                ///< That solve islands of bodies side by side.
   std::vector<std::string> sets;  ///< PATH=VALUE
   std::string preset;             ///< Recalled after the scene ran, before the sets.
   std::vector<std::string> package_paths;

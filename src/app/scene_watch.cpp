@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <array>
 #include <filesystem>
+#include <functional>
 #include <memory>
 #include <utility>
 
@@ -16,12 +17,14 @@
 
 #include "base/log.h"
 #include "base/text.h"
+#include "script/files.h"
 
 namespace limber {
 
 namespace {
 
 constexpr std::size_t kMostScenes = 1000;  // that are listed
+constexpr int kLate = 250;                 // ms; how often a reload that a take holds up is tried again
 
 std::string folder_of(const std::string& scene) {
   std::error_code fault;
@@ -35,6 +38,7 @@ SceneWatch::SceneWatch(EngineLink& link, Engine& engine, const std::string& scen
     : link_(link),
       engine_(engine),
       folder_(folder_of(scene)),
+      takes_(ScriptFiles(scene, {}).show_folder() + "/takes"),
       way_(way),
       wake_(eventfd(0, EFD_NONBLOCK | EFD_CLOEXEC)) {
   link_.ask_scenes = [this](const Message& message, const Origin& origin) {
@@ -73,14 +77,14 @@ void SceneWatch::run(FileWatch& files) {
   std::vector<Command> wishes;
   while (!stop_.load()) {
     sleep(files);
-    const bool saved = !files.poll(FileWatch::Time::clock::now()).empty();
+    const bool saved = !files.poll(FileWatch::Time::clock::now()).empty() || std::exchange(late_, false);
     const bool rerun = rerun_.exchange(false);
     bool other = false;
     wishes_.drain(wishes);
     for (const Command& wish : wishes) other = (!stop_.load() && serve(wish.messages.front(), wish.origin)) || other;
     if (stop_.load() || !(saved || rerun || other)) continue;
     // one that has just begun has read what there is
-    if (!other) engine_.reload(!saved);
+    if (!other) late_ = !engine_.reload(!saved) && saved;
     files.watch(engine_.files(), FileWatch::Time::clock::now());
   }
 }
@@ -99,8 +103,45 @@ std::vector<std::string> SceneWatch::scenes() const {
   return names;
 }
 
+// the takes of the folder, the newest one first
+std::vector<std::string> SceneWatch::takes() const {
+  std::vector<std::pair<std::filesystem::file_time_type, std::string>> found;
+  std::error_code fault;  // a folder that is not there holds none
+  for (std::filesystem::directory_iterator at(takes_, fault), end; !fault && at != end; at.increment(fault)) {
+    std::error_code gone;
+    if (at->path().extension() != ".take") continue;  // all of them: the newest may be the last that is found
+    const auto when = at->last_write_time(gone);
+    if (!gone) found.emplace_back(when, at->path().stem());
+  }
+  std::ranges::sort(found, std::greater());
+  std::vector<std::string> names(found.size());
+  std::ranges::transform(found, names.begin(), [](const auto& take) { return take.second; });
+  return names;
+}
+
+bool SceneWatch::play_take(const Message& wish, const Origin& origin) {
+  const std::vector<std::string> names = takes();
+  std::string name = wish.args.empty() ? "" : wish.args[0].text;
+  if (name.ends_with(".take")) name.resize(name.size() - 5);
+  if (name.empty() && !names.empty()) name = names.front();
+  if (std::ranges::find(names, name) == names.end()) {
+    refuse(wish, origin,
+           names.empty() ? "there is no take in takes/ of the show's folder; /take/record makes one"
+                         : fmt::format("there is no take '{}' in takes/{}", printable(name), name_hint(name, names)));
+    return false;
+  }
+  const Result<void> played = engine_.play_take(takes_ + "/" + name + ".take");
+  if (!played) {
+    refuse(wish, origin, played.error());
+    return false;
+  }
+  link_.push_out({Outgoing::To::sender, origin, {"/take/playing", {Arg::of(name)}}});
+  return true;
+}
+
 // whether another scene plays now
 bool SceneWatch::serve(const Message& wish, const Origin& origin) {
+  if (wish.address.starts_with("/take/")) return play_take(wish, origin);
   const std::vector<std::string> names = scenes();
   if (wish.args.empty()) {
     Message answer{"/list/scenes", {}};
@@ -133,11 +174,11 @@ void SceneWatch::refuse(const Message& wish, const Origin& origin, const std::st
 }
 
 void SceneWatch::sleep(const FileWatch& files) const {
-  int wait = -1;
+  int wait = late_ ? kLate : -1;
   if (const auto due = files.due()) {
     const auto now = FileWatch::Time::clock::now();
     const auto left = std::chrono::ceil<std::chrono::milliseconds>(std::max(*due, now) - now);
-    wait = static_cast<int>(std::min<std::int64_t>(left.count(), 60000));
+    wait = static_cast<int>(std::min<std::int64_t>(left.count(), late_ ? kLate : 60000));
   }
   std::array<pollfd, 2> calls{{{wake_, POLLIN, 0}, {files.fd(), POLLIN, 0}}};
   ::poll(calls.data(), calls.size(), wait);

@@ -30,7 +30,9 @@ class SceneWatch {
  private:
   void run(FileWatch& files);
   bool serve(const Message& wish, const Origin& origin);
+  bool play_take(const Message& wish, const Origin& origin);
   std::vector<std::string> scenes() const;
+  std::vector<std::string> takes() const;
   void refuse(const Message& wish, const Origin& origin, const std::string& why);
   void sleep(const FileWatch& files) const;
   void wake() const;
@@ -38,9 +40,11 @@ class SceneWatch {
   EngineLink& link_;
   Engine& engine_;
   std::string folder_;
+  std::string takes_;  // the folder of the show's
   FileWatch::Way way_;
   Inbox<Command> wishes_{64, std::size_t{1} << 16};  // messages about scenes
   int wake_ = -1;
+  bool late_ = false;  // something was saved while a take played; of the thread
   std::atomic<bool> stop_{false};
   std::atomic<bool> rerun_{false};
   std::thread thread_;

@@ -26,6 +26,8 @@ namespace limber {
 
 namespace {
 
+// answered from beside the simulation
+constexpr const char* kAnsweredLate[] = {"/transport/scene", "/list/scenes", "/take/play"};
 constexpr const char* kLast = "/physics/sim/tick";  // asked for behind the message
 
 Result<Endpoint> endpoint_named(const std::string& text) {
@@ -117,7 +119,8 @@ int send_command(const SendCommand& command) {
   }
   if (command.wait <= 0) return kFine;
   const auto ask = [&] { (void)send_message(socket->fd(), *to, {"/get", {Arg::of(kLast)}}); };
-  const bool late = message.address.starts_with("/transport/scene") || message.address.starts_with("/list/scenes");
+  const bool late =
+      std::ranges::any_of(kAnsweredLate, [&](const char* start) { return message.address.starts_with(start); });
   const Replies answers = show_answers(socket->fd(), command.wait, late, ask);
   if (answers.refused) return kInput;
   if (!answers.last) {

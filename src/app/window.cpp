@@ -89,6 +89,8 @@ KeyMods key_mods(int mods) {
   return {(mods & GLFW_MOD_CONTROL) != 0, (mods & GLFW_MOD_SHIFT) != 0, (mods & GLFW_MOD_ALT) != 0};
 }
 
+constexpr int kFromCorner = 64;  // of another screen, in its units
+
 Window& of(GLFWwindow* window) { return *static_cast<Window*>(glfwGetWindowUserPointer(window)); }
 
 GLFWmonitor* screen_of(GLFWwindow* window) {
@@ -142,6 +144,24 @@ Result<std::unique_ptr<Window>> Window::open(const std::string& title, int width
     return Error{fmt::format("no window with OpenGL 3.3 can be opened: {}", why)};
   }
   return std::unique_ptr<Window>(new Window(window));
+}
+
+Result<std::unique_ptr<Window>> Window::open_beside(const Window& first, const std::string& title, int width,
+                                                    int height) {
+  GLFWmonitor* const taken = screen_of(first.window_);
+  GLFWwindow* const window = glfwCreateWindow(width, height, title.c_str(), nullptr, first.window_);
+  if (window == nullptr) return Error{fmt::format("no second window can be opened: {}", glfw_fault())};
+  std::unique_ptr<Window> made(new Window(window));
+  glfwMakeContextCurrent(first.window_);
+  int count = 0;
+  GLFWmonitor** const screens = glfwGetMonitors(&count);
+  GLFWmonitor** const other = std::find_if(screens, screens + count, [&](GLFWmonitor* s) { return s != taken; });
+  if (other == screens + count) return made;
+  int x = 0;
+  int y = 0;
+  glfwGetMonitorPos(*other, &x, &y);
+  glfwSetWindowPos(window, x + kFromCorner, y + kFromCorner);
+  return made;
 }
 
 Window::Window(GLFWwindow* window) : window_(window) {
@@ -291,5 +311,7 @@ void Window::toggle_full_screen() {
 }
 
 void Window::swap() { glfwSwapBuffers(window_); }
+void Window::use() { glfwMakeContextCurrent(window_); }
+void Window::wait_for_screen(bool waits) { glfwSwapInterval(waits ? 1 : 0); }
 
 }  // namespace limber

@@ -27,6 +27,10 @@ class Window {
   static bool has_display();
   /// Its context is current on this thread. An error says why there can be none. [main]
   static Result<std::unique_ptr<Window>> open(const std::string& title, int width, int height);
+  /// Another one, whose context shares objects with `first`'s; on another screen where there is one. First's context
+  /// stays current. It goes before `first`. [main]
+  static Result<std::unique_ptr<Window>> open_beside(const Window& first, const std::string& title, int width,
+                                                     int height);
   ~Window();
   Window(const Window&) = delete;
   Window& operator=(const Window&) = delete;
@@ -56,6 +60,10 @@ class Window {
   void toggle_full_screen();
   bool is_full_screen() const;
   void swap();
+  /// Its context is current from here on. [main]
+  void use();
+  /// Whether swap() waits for the screen, while its context is current. [main]
+  void wait_for_screen(bool waits);
 
  private:
   explicit Window(GLFWwindow* window);

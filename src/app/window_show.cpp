@@ -112,13 +112,11 @@ void WindowShow::look_from(const Orbit& orbit) {
 void WindowShow::hear_hands(int width, int height, double now) {
   const std::vector<InputEvent> events = window_->take_events();
   for (const InputEvent& event : events) gui_->push(event);
-  gui_->frame({static_cast<double>(width), static_cast<double>(height), window_->content_scale() * panel_scale_, now});
-  for (const HotkeyAction action : gui_->take_actions()) {
-    if (action == HotkeyAction::full_screen) window_->toggle_full_screen();
-    if (action != HotkeyAction::home_view) continue;
-    hand_.follow_nothing();
-    look_from(home_);
+  if (output_ != nullptr) {
+    for (const InputEvent& key : output_->take_keys()) gui_->push(key);
   }
+  gui_->frame({static_cast<double>(width), static_cast<double>(height), window_->content_scale() * panel_scale_, now});
+  for (const HotkeyAction action : gui_->take_actions()) act(action);
   Desk& desk = gui_->desk();
   if (desk.image != nullptr) {
     const HandView view{*now_, *desk.image, lens_of(camera_of(*now_), width, height, free_part(*gui_, width, height)),
@@ -135,6 +133,41 @@ void WindowShow::hear_hands(int width, int height, double now) {
   }
   hear_mouse();
   follow();
+}
+
+void WindowShow::act(HotkeyAction action) {
+  if (action == HotkeyAction::output) toggle_output();
+  if (action == HotkeyAction::full_screen)
+    output_ != nullptr ? output_->toggle_full_screen() : window_->toggle_full_screen();
+  if (action != HotkeyAction::home_view && action != HotkeyAction::go_to_view) return;
+  hand_.follow_nothing();
+  if (action == HotkeyAction::home_view) look_from(home_);
+}
+
+void WindowShow::toggle_output() {
+  if (output_ != nullptr) return output_.reset();
+  Result<std::unique_ptr<OutputWindow>> opened = OutputWindow::open(*window_, scene_);
+  if (opened) {
+    output_ = std::move(*opened);
+  } else {
+    log_error("{}", opened.error());
+  }
+}
+
+Result<void> WindowShow::draw_window(double mix, int width, int height) {
+  if (Result<void> drawn = renderer_->draw(*before_, *now_, mix, width, height, free_part(*gui_, width, height));
+      !drawn)
+    return drawn;
+  renderer_->show(width, height);
+  gui_->paint();
+  window_->swap();
+  return {};
+}
+
+// after the first window's picture is on its way
+Result<void> WindowShow::draw_output(double mix) {
+  if (output_ != nullptr && output_->closed()) output_.reset();
+  return output_ == nullptr ? Result<void>() : output_->draw(*renderer_, *before_, *now_, mix);
 }
 
 void WindowShow::follow() {
@@ -201,20 +234,23 @@ WindowShow::End WindowShow::frame() {
   }
   const int width = window_->width();
   const int height = window_->height();
-  if (width == 0 || height == 0) {
+  const bool seen = width > 0 && height > 0;
+  if (!seen && output_ == nullptr) {
     window_->poll(0.05);
     return End::none;
   }
-  hear_hands(width, height, now);
   const double mix = interval_ <= 0 ? 1 : std::clamp((now - came_) / interval_, 0.0, 1.0);
-  if (const Result<void> drawn = renderer_->draw(*before_, *now_, mix, width, height, free_part(*gui_, width, height));
-      !drawn) {
-    log_error("{}; playing on headless", drawn.error());
-    return End::lost;
+  if (seen) {
+    hear_hands(width, height, now);
+    if (const Result<void> drawn = draw_window(mix, width, height); !drawn) {
+      log_error("{}; playing on headless", drawn.error());
+      return End::lost;
+    }
   }
-  renderer_->show(width, height);
-  gui_->paint();
-  window_->swap();
+  if (const Result<void> drawn = draw_output(mix); !drawn) {
+    log_error("{}; the output window goes", drawn.error());
+    output_.reset();
+  }
   tell_rate(now);
   return End::none;
 }

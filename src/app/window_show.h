@@ -4,6 +4,7 @@
 #include <memory>
 #include <string>
 
+#include "app/output_window.h"
 #include "app/picture_hand.h"
 #include "app/picture_options.h"
 #include "app/window.h"
@@ -38,13 +39,18 @@ class WindowShow {
   void look_at_snapshots(double now);
   void look_from(const Orbit& orbit);
   void hear_hands(int width, int height, double now);
+  void act(HotkeyAction action);
+  void toggle_output();
+  Result<void> draw_window(double mix, int width, int height);
+  Result<void> draw_output(double mix);
   void follow();
   void hear_mouse();
   void send(std::vector<Message> messages);
   void tell_rate(double now);
 
   std::unique_ptr<Window> window_;
-  std::unique_ptr<Renderer> renderer_;  // before its context goes
+  std::unique_ptr<Renderer> renderer_;    // before its context goes
+  std::unique_ptr<OutputWindow> output_;  // null: there is none
   PictureHand hand_;
   std::optional<std::uint32_t> follows_;  // what of hand_.followed() is followed already
   Vec3 follows_from_{0};                  // the eye, as seen from what is followed

@@ -1,7 +1,9 @@
 // Questions from outside, answered from the store.
 #include "engine/answers.h"
 
+#include <algorithm>
 #include <array>
+#include <vector>
 
 #include <fmt/format.h>
 
@@ -49,7 +51,10 @@ Outcome Answers::list(std::string_view kind, std::span<const Arg> args) const {
   answer.args.push_back(Arg::of(name));
   const Store& store = world_.store();
   if (kind == "behaviors") {
-    for (const Behavior* behavior : body->behaviors()) answer.args.push_back(Arg::of(behavior->name()));
+    const BehaviorList& list = world_.behaviors();
+    std::vector<const Behavior*> behaviors(body->behaviors().begin(), body->behaviors().end());
+    std::ranges::sort(behaviors, {}, [&](const Behavior* behavior) { return list.place(*behavior); });
+    for (const Behavior* behavior : behaviors) answer.args.push_back(Arg::of(behavior->name()));
     return answered(std::move(answer), 1);
   }
   const std::string_view group = kind.substr(0, kind.size() - 1);

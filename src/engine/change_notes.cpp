@@ -15,7 +15,7 @@ void ChangeNotes::begin(const Origin& who, double time) {
   time_ = time;
 }
 
-void ChangeNotes::heard(const Store& store, NodeId id, const Row& row) {
+void ChangeNotes::heard(NodeId id, const Row& row, const double* before) {
   if (row.kind != RowKind::property) return;
   const std::uint32_t key = (id.slot * 0x9e3779b9u) ^ (row.index * 0x85ebca6bu) ^ (who_.port * 0xc2b2ae35u);
   const auto place = static_cast<std::uint8_t>(key >> 24);
@@ -31,7 +31,7 @@ void ChangeNotes::heard(const Store& store, NodeId id, const Row& row) {
   }
   if (!same) {
     note = {who_, id, &row, {}, 0, time_, true};
-    store.get(id, row, note.from.data());
+    std::copy_n(before, row.width, note.from.begin());
   }
   note.time = time_;
   note.touched = true;

@@ -20,8 +20,8 @@ class ChangeNotes {
 
   /// What is set from here on is set by this hand, at that time (clock_seconds()).
   void begin(const Origin& who, double time);
-  /// The row is about to be written. Allocates nothing.
-  void heard(const Store& store, NodeId id, const Row& row);
+  /// The row was `before`, and is written. Allocates nothing.
+  void heard(NodeId id, const Row& row, const double* before);
   /// The tick's values are what they are: the log is told.
   void tell(const Store& store);
 

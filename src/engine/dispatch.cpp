@@ -49,7 +49,9 @@ constexpr Irregular kIrregulars[] = {
     {"/preset/morph", "preset preset amount", "What lies between two, 0: the first, 1: the second."},
     {"/preset/delete", "name", "Forgets a preset."},
     {"/take/record", "[name]", "From the scene's start on, all that comes in is recorded, so that it can be replayed."},
-    {"/take/stop", "", "The take ends; its file is whole."},
+    {"/take/stop", "", "The take that is recorded ends, and its file is whole; or the one that plays does."},
+    {"/take/play", "[name]",
+     "Plays a take of the show's folder in the place of the show, the newest one if none is named."},
 };
 
 // the seed's that took a joint's frames apart; refused with the reason
@@ -413,7 +415,7 @@ Outcome Dispatch::preset(const Message& message) {
 Outcome Dispatch::take(const Message& message) {
   std::array<char, 96> buffer;
   const std::span<const Arg> args = message.args;
-  if (plain_address(message.address, buffer) == "/take/record") {
+  if (plain_address(message.address, buffer) != "/take/stop") {
     if (args.size() > 1 || (args.size() == 1 && !args[0].is_text()))
       return Outcome::refused("takes the name of the take, or nothing");
   } else if (!args.empty() && !released(args)) {

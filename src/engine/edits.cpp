@@ -38,7 +38,7 @@ void Edits::begin(const Origin& who, const World& world) {
   hand_.note_in(nullptr);
 }
 
-void Edits::heard(const Store& store, NodeId id, const Row& row, bool later) {
+void Edits::heard(const Store& store, NodeId id, const Row& row, bool later, const double* before) {
   // what comes with a thing that was made in this call goes with the thing
   if (quiet_ || row.kind != RowKind::property || store.born(id) > structure_) return;
   version_++;
@@ -50,8 +50,7 @@ void Edits::heard(const Store& store, NodeId id, const Row& row, bool later) {
   step.later = step.later || later;
   if (!now_->take(id, row)) return;
   step.edits.push_back({id, &row, step.values.size()});
-  const double* const values = store.values(id, row);
-  step.values.insert(step.values.end(), values, values + row.width);
+  step.values.insert(step.values.end(), before, before + row.width);
   values_ += row.width;
 }
 

@@ -29,8 +29,8 @@ class Edits {
   /// What is set from here on is set by this hand: what comes in one tick, or at once while time stands still, is one
   /// step.
   void begin(const Origin& who, const World& world);
-  /// The row is about to be written, now or later on.
-  void heard(const Store& store, NodeId id, const Row& row, bool later);
+  /// The row was `before`, and is written, now or later on.
+  void heard(const Store& store, NodeId id, const Row& row, bool later, const double* before);
   /// The tick's values are what they are: what was set to what it was is no step.
   void end(const Store& store);
 

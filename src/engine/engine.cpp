@@ -37,9 +37,16 @@ class Stopwatch {
 Engine::Engine(EngineLink& link, EngineOptions options)
     : link_(link),
       options_(std::move(options)),
-      stage_(std::make_unique<Stage>(link, presets_, edits_)),
+      team_(options_.threads > 1 ? std::make_shared<Team>(options_.threads) : nullptr),
+      stage_(new_stage()),
       reload_(options_.scene, *this, hand_) {
   link_.wake_engine = [this] { commands_wait_.store(true, std::memory_order_relaxed); };
+}
+
+std::unique_ptr<Stage> Engine::new_stage() {
+  WorldSetup setup;
+  setup.team = team_;
+  return std::make_unique<Stage>(link_, presets_, edits_, setup);
 }
 
 Engine::~Engine() {
@@ -63,18 +70,20 @@ Result<void> Engine::start() {
 
 Result<void> Engine::start_show() {
   const TakenRun run = begin_run(TakeRun::Kind::start);
-  SceneOptions scene_options = options_.scene_options;
-  scene_options.sources = run.sources;
+  const SceneOptions live = scene_options();
+  SceneOptions run_options = live;
+  run_options.sources = run.sources;
   if (run.fails) return Error{"the scene did not run when the take was recorded either"};
-  if (Result<void> ran = stage_->run(options_.scene, *this, scene_options); !ran) {
-    stage_ = std::make_unique<Stage>(link_, presets_, edits_);
-    reload_.begin(*stage_, options_.scene_options, options_.scene);
+  if (Result<void> ran = stage_->run(options_.scene, *this, run_options); !ran) {
+    std::vector<SourceFile> tried = stage_->scene->sources()->files();
+    stage_ = new_stage();
+    reload_.begin(*stage_, live, options_.scene, std::move(tried));
     presets_.scene_says(reload_.script());
     return ran;
   }
   if (stage_->scene != nullptr) stage_->scene->count_calls(calls_);
   run_was_good(run, *stage_, presets_.list(), presets_.file());
-  reload_.begin(*stage_, options_.scene_options, options_.scene);
+  reload_.begin(*stage_, live, options_.scene);
   presets_.scene_says(reload_.script());
   World& world = stage_->world;
   if (options_.scene_options.seed) {
@@ -93,16 +102,17 @@ void Engine::begin_show() {
   if (reload_.take_rerun(*stage_)) run_now(TakeRun::Kind::rerun, true);
   stage_->world.settle();
   if (stage_->scene != nullptr) stage_->scene->start();
+  presets_.make_ready(stage_->world);
 }
 
 bool Engine::reset() {
   const TakenRun run = begin_run(TakeRun::Kind::reset);
   // a scene that fails now leaves the show as it is
-  auto fresh = std::make_unique<Stage>(link_, presets_, edits_);
-  SceneOptions scene_options = options_.scene_options;
+  auto fresh = new_stage();
+  SceneOptions live = scene_options();
   const World& before = stage_->world;
-  if (before.seed() != scene_seed_) scene_options.seed = before.seed();  // the performer's
-  SceneOptions run_options = scene_options;
+  if (before.seed() != scene_seed_) live.seed = before.seed();  // the performer's
+  SceneOptions run_options = live;
   run_options.sources = run.sources;
   const Result<void> ran = run.fails ? Result<void>(Error{"as it had when the take was recorded"})
                                      : fresh->run(options_.scene, *this, run_options);
@@ -112,9 +122,9 @@ bool Engine::reset() {
     return false;
   }
   run_was_good(run, *fresh);
-  reload_.begin(*fresh, scene_options, options_.scene);
+  reload_.begin(*fresh, live, options_.scene);
   presets_.scene_says(reload_.script());
-  if (scene_options.seed) keep_state(*fresh, "seed");
+  if (live.seed) keep_state(*fresh, "seed");
   take_stage(std::move(fresh));
   if (stage_->scene != nullptr) stage_->scene->arm();  // while both were there, the new one ran interpreted
   replay_hand();
@@ -131,6 +141,14 @@ void Engine::keep_state(Stage& fresh, std::string_view name) const {
 
 std::unique_ptr<Stage> Engine::take_stage(std::unique_ptr<Stage> fresh) {
   for (const char* state : {"paused", "speed", "history"}) keep_state(*fresh, state);
+  return swap_stage(std::move(fresh));
+}
+
+// the debug picture is whoever looks's, whatever plays
+std::unique_ptr<Stage> Engine::swap_stage(std::unique_ptr<Stage> fresh) {
+  const Row& overlay = Look::table().at("overlay");
+  (void)fresh->store.set(fresh->world.visuals().look().id(), overlay,
+                         {stage_->store.values(stage_->world.visuals().look().id(), overlay), 1});
   faults_ += stage_->world.health_events();
   std::swap(stage_, fresh);
   history_.begin_anew("the scene has begun there");
@@ -212,7 +230,7 @@ void Engine::pace() {
 }
 
 bool Engine::finished() const {
-  if (replays() && player_->over()) return true;
+  if (replays() && !plays_ && player_->over()) return true;
   if (options_.strict && faults() > 0) return true;
   if (options_.ticks && stage_->world.tick() >= *options_.ticks) return true;
   return options_.duration && stage_->world.time() >= *options_.duration - 1e-9;
@@ -228,14 +246,11 @@ void Engine::stop() {
 
 void Engine::pass(bool may_step) {
   Stopwatch watch;
-  if (replays()) {
-    if (!player_->next()) return;
-    may_step = player_->tick().running;
-    calls_.begin_tick(player_->current_scripts() ? std::vector<StoppedCall>() : player_->tick().stopped);
-    replay_runs();
-  } else {
-    calls_.begin_tick();
-    requests_.serve();
+  calls_.begin_tick();
+  requests_.serve();
+  if (replays() && !next_of_take(may_step)) {
+    if (!plays_) return;
+    end_play();
   }
   rerun();
   drain();
@@ -252,13 +267,16 @@ void Engine::pass(bool may_step) {
     if (stage.world.take_reset_request()) reset();
     take_tick(running);
   }
-  if (std::exchange(take_ends_, false)) end_take();
+  if (std::exchange(take_ends_, false)) {
+    end_take();
+    if (plays_) end_play();
+  }
   publish();
   make_image(asks_);
   if (was_paused_ != stage_->transport.paused()) send_transport();
   times_.snapshot = watch.lap();
   presets_.prepare(stage_->world);
-  if (recovery_ != nullptr && recovery_->asks()) give_recovery();
+  if (recovery_ != nullptr && !replays() && recovery_->asks()) give_recovery();
   if (stage_->scene != nullptr) stage_->scene->collect_garbage();
   end_pass(running);
   times_.collector = watch.lap();

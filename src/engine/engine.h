@@ -44,6 +44,7 @@ struct EngineOptions {
   std::string recovery;                ///< The show's values are kept in that folder as long as it plays; empty: not.
   std::chrono::milliseconds recovery_every = RecoveryKeeper::kEvery;
   bool recover = false;       ///< `--recover`: what a run that did not end well has left is brought back.
+  int threads = 1;            ///< That solve islands side by side, 1 to Team::kMost, with the same result.
   std::vector<Message> sets;  ///< `--set`: the performer's hand before the first tick, after the preset.
 };
 
@@ -73,13 +74,17 @@ class Engine : private ScriptHost {
 
   /// Runs the scene beside the show and has what it says otherwise than the last good run applied between two ticks; a
   /// fault is told, and the show plays on as it is. Waits until that is done. `again`: a run of what the last good one
-  /// has read, because a parameter has changed, not the disk. [any but sim, while run() goes]
-  void reload(bool again = false);
+  /// has read, because a parameter has changed, not the disk. False: nothing was tried, since a take plays, or the show
+  /// has ended. [any but sim, while run() goes]
+  bool reload(bool again = false);
   /// The same at once, on the simulation's own thread. [sim]
   Reload::End reload_now(bool again = false);
   /// Runs another scene's file beside the show; it plays from its start instead, between two ticks, without what the
   /// performer has set. An error: what is wrong with it, and the show plays on. [any but sim, while run() goes]
   Result<void> change_scene(const std::string& file);
+  /// A take plays in the place of the show, from its begin to its end or /take/stop; from there the show goes on in the
+  /// performer's hands. An error: what is wrong with the take, and the show plays on. [any but sim, while run() goes]
+  Result<void> play_take(const std::string& file);
   /// Files that are worth a reload when they change. [any]
   std::vector<SourceFile> files() const { return reload_.files(); }
 
@@ -137,6 +142,8 @@ class Engine : private ScriptHost {
   void keep_state(Stage& fresh, std::string_view name) const;
   /// The stage becomes the show; the answer is the one before.
   std::unique_ptr<Stage> take_stage(std::unique_ptr<Stage> fresh);
+  std::unique_ptr<Stage> new_stage();
+  std::unique_ptr<Stage> swap_stage(std::unique_ptr<Stage> fresh);
   void replay_hand();
   Presets::Book read_presets(const std::string& scene);
   Result<void> first_hand();
@@ -160,7 +167,15 @@ class Engine : private ScriptHost {
                     const std::string& preset_file = "");
   Result<void> start_record();
   Result<void> start_replay();
+  Result<void> begin_replay(std::unique_ptr<TakePlayer> player, const std::string& file);
   Result<void> replay_beginning();
+  SceneOptions scene_options() const;
+  Result<void> try_take(TakePlayer& player);
+  std::unique_ptr<Stage> begin_play(std::unique_ptr<TakePlayer> player, const std::string& file, Presets::Book& book);
+  void end_play();
+  bool next_of_take(bool& may_step);
+  void refuse_commands();
+  void refuse_hand(const Message& message, const Origin& origin);
   TakeBegin take_begin(bool reset) const;
   void replay_runs();
   void replay_run(const TakeRun& run);
@@ -173,7 +188,7 @@ class Engine : private ScriptHost {
   std::function<void(const std::string&)> say_take_failed();
   void begin_show();
   void rerun();
-  bool between_ticks(const std::function<void()>& work);
+  Result<void> between_ticks(const std::function<void()>& work);
   void drain();
   /// What the message cost of kTickWork.
   int execute(Message& message, const Origin& origin);
@@ -203,6 +218,7 @@ class Engine : private ScriptHost {
   bool went_back_ = false;  // with the last message
   bool again_ = false;      // what was done once is done again
   std::optional<LogSilence> silence_;
+  const std::shared_ptr<Team> team_;  // null: this thread alone
   std::unique_ptr<Stage> stage_;
   std::uint64_t scene_seed_ = 0;  // as the scene's run left it
   Reload reload_;
@@ -211,6 +227,8 @@ class Engine : private ScriptHost {
   CallLedger calls_;
   std::unique_ptr<TakeRecorder> recorder_;
   std::unique_ptr<TakePlayer> player_;
+  bool plays_ = false;                                // what is replayed plays in the place of a show
+  Presets::Book after_play_;                          // the presets, once that is over
   std::vector<std::unique_ptr<TakeWriter>> written_;  // takes that have ended, and may still be written
   std::string take_name_;                             // of the one that is recorded or replayed
   std::optional<std::string> take_wanted_;            // the file of a take that begins at the tick's end

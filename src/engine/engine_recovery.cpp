@@ -36,7 +36,7 @@ Result<void> Engine::bring_back() {
   const std::size_t count = recovered_->shape->row_count();
   log_info("--recover: {} value{} at {}{}{}", count, count == 1 ? " is back as it was" : "s are back as they were",
            recovered_when_.empty() ? "the take's beginning" : recovered_when_, said->empty() ? "" : "; ", *said);
-  if (recovery_ != nullptr) recovery_->brought_back();
+  if (recovery_ != nullptr && !replays()) recovery_->brought_back();
   return {};
 }
 

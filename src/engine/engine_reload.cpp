@@ -7,15 +7,22 @@
 
 namespace limber {
 
-bool Engine::between_ticks(const std::function<void()>& work) {
-  return requests_.ask(work, [this] {
+// a take that is replayed has all that reaches the show
+Result<void> Engine::between_ticks(const std::function<void()>& work) {
+  Result<void> done = Error{"the show has ended"};
+  const auto work_of_show = [&] {
+    done = replays() ? Result<void>(Error{"a take plays; /take/stop ends it"}) : Result<void>();
+    if (done) work();
+  };
+  requests_.ask(work_of_show, [this] {
     commands_wait_.store(true, std::memory_order_relaxed);
     { const std::scoped_lock lock(wake_mutex_); }
     wake_.notify_all();
   });
+  return done;
 }
 
-void Engine::reload(bool again) {
+bool Engine::reload(bool again) {
   constexpr int kTries = 3;
   for (int i = 0; i < kTries; i++) {
     DraftOrder order;
@@ -23,7 +30,7 @@ void Engine::reload(bool again) {
       begin_run(TakeRun::Kind::order, again);
       order = reload_.order(*stage_, again);
     };
-    if (!between_ticks(copy_order)) return;
+    if (!between_ticks(copy_order)) return false;
     Draft draft(std::move(order), *this);
     Reload::End end = Reload::End::outdated;
     const auto apply_draft = [&] {
@@ -31,10 +38,11 @@ void Engine::reload(bool again) {
       end = take(draft);
       if (end == Reload::End::applied) run_was_good(run, *stage_);
     };
-    if (!between_ticks(apply_draft) || end != Reload::End::outdated) return;
+    if (!between_ticks(apply_draft)) return false;
+    if (end != Reload::End::outdated) return true;
   }
   // resets come so fast that each draft is late: this one stretches a tick
-  between_ticks([&] { reload_now(again); });
+  return between_ticks([&] { reload_now(again); }).ok();
 }
 
 Reload::End Engine::reload_now(bool again) { return run_now(TakeRun::Kind::reload, again); }
@@ -70,24 +78,23 @@ Reload::End Engine::take(Draft& draft) {
 }
 
 Result<void> Engine::change_scene(const std::string& file) {
-  auto fresh = std::make_unique<Stage>(link_, presets_, edits_);
+  auto fresh = new_stage();
   Result<void> ran = fresh->run_beside(file, *this, options_.scene_options);
   if (!ran) return ran;
   Presets::Book book = read_presets(file);
-  const bool done = between_ticks([&] {
+  // the stage and the presets before go at the end of this, beside the show
+  return between_ticks([&] {
     const TakenRun run = begin_run(TakeRun::Kind::scene, false, file);
     run_was_good(run, *fresh, book.list, book.file);
     play_scene(file, fresh, book);
   });
-  if (!done) return Error{"the show has ended"};
-  return ran;  // the stage and the presets before go here, beside the show
 }
 
 void Engine::play_scene(const std::string& file, std::unique_ptr<Stage>& fresh, Presets::Book& book) {
   options_.scene = file;
   hand_.clear();
   edits_.clear();
-  reload_.begin(*fresh, options_.scene_options, file);
+  reload_.begin(*fresh, scene_options(), file);
   presets_.scene_says(reload_.script());
   book = presets_.open(std::move(book));
   if (stage_->scene != nullptr) stage_->scene->disarm();

@@ -17,6 +17,7 @@ namespace {
 
 constexpr std::size_t kMostName = 100;
 constexpr const char* kReplays = "a take is replayed; it takes no messages";
+constexpr const char* kPlays = "a take plays in the place of the show; /take/stop brings the hands back";
 
 // a name that came by a message leads into no other folder
 Result<std::string> take_name(const Message& message, const std::string& scene) {
@@ -36,16 +37,6 @@ Result<std::string> take_name(const Message& message, const std::string& scene) 
   char text[32] = {};
   (void)std::strftime(text, sizeof text, "%Y-%m-%d-%H%M%S", &here);
   return fmt::format("{}-{}", std::filesystem::path(scene).stem().string(), text);
-}
-
-std::string name_of(const std::string& file) { return std::filesystem::path(file).stem().string(); }
-
-// of a replay: what was stopped then is stopped again, nothing else is
-ScriptLimits no_limits() {
-  ScriptLimits limits;
-  limits.call_ms = limits.run_ms = 1e9;
-  limits.memory = std::size_t{16} << 30u;
-  return limits;
 }
 
 }  // namespace
@@ -95,7 +86,7 @@ Result<void> Engine::start_record() {
       std::make_unique<TakeRecorder>(TakeWriter::Place{options_.record, false}, take_begin(false), say_take_failed());
   Result<void> opened = recorder_->opened();
   if (!opened) recorder_ = nullptr;
-  take_name_ = name_of(options_.record);
+  take_name_ = take_title(options_.record);
   return opened;
 }
 
@@ -121,7 +112,8 @@ Outcome Engine::ask_take(const Message& message) {
   Outcome outcome;
   outcome.kind = Outcome::Kind::answered;
   if (replays()) return outcome;
-  if (plain_name(message.address) == "/take/stop") {
+  const std::string what = plain_name(message.address);
+  if (what == "/take/stop") {
     if (recorder_ == nullptr) return Outcome::refused("no take is being recorded; /take/record begins one");
     take_ends_ = true;
     outcome.answers.push_back({"/take/stopped", {}});
@@ -129,6 +121,11 @@ Outcome Engine::ask_take(const Message& message) {
   }
   if (recorder_ != nullptr || take_wanted_)
     return Outcome::refused("a take is being recorded already; /take/stop ends it");
+  if (what == "/take/play") {
+    if (!link_.ask_scenes) return Outcome::refused("a take is played in a show (limber play, without --fast)");
+    outcome.kind = Outcome::Kind::scenes;
+    return outcome;
+  }
   if (stage_->scene == nullptr) return Outcome::refused("there is no scene that could be recorded");
   const Result<std::string> name = take_name(message, options_.scene);
   if (!name) return Outcome::refused(name.error());
@@ -141,7 +138,7 @@ Outcome Engine::ask_take(const Message& message) {
 void Engine::begin_take() {
   const std::string file = *std::exchange(take_wanted_, std::nullopt);
   (void)stage_->world.take_reset_request();
-  take_name_ = name_of(file);
+  take_name_ = take_title(file);
   edits_.clear();  // a replay does not know of them
   calls_.begin_tick();
   recorder_ = std::make_unique<TakeRecorder>(TakeWriter::Place{file, true}, take_begin(true), say_take_failed());
@@ -173,8 +170,8 @@ void Engine::finish_saving() {
 
 void Engine::tell_take() {
   TakeNode::Told told;
-  if (player_ != nullptr) told = {take_name_, true, player_->ticks(), player_->whole()};
-  if (recorder_ != nullptr) told = {take_name_, false, recorder_->ticks(), 0};
+  if (player_ != nullptr) told = {take_name_, true, player_->ticks(), player_->whole(), plays_};
+  if (recorder_ != nullptr) told = {take_name_, false, recorder_->ticks(), 0, false};
   stage_->take_node.tell(told);
 }
 
@@ -184,29 +181,6 @@ void Engine::take_tick(bool running, bool begins) {
   if (recorder_ != nullptr && recorder_->failed()) end_take();
   if (recorder_ != nullptr) recorder_->end_tick(running, stage_->world, calls_, hash, begins);
   if (!written_.empty()) std::erase_if(written_, [](const auto& writer) { return writer->done(); });
-}
-
-Result<void> Engine::start_replay() {
-  auto player = TakePlayer::open(options_.replay, options_.current_scripts);
-  if (!player) return Error{player.error()};
-  player_ = std::move(*player);
-  take_name_ = name_of(options_.replay);
-  const TakeBegin& begin = player_->begin();
-  options_.scene = begin.scene;
-  options_.scene_options.seed = begin.seed;
-  options_.scene_options.package_paths = begin.package_paths;
-  options_.preset = begin.preset;
-  options_.sets = begin.sets;
-  if (!begin.recovered.empty()) recovered_ = begin.recovered.front();
-  const bool exact = !player_->current_scripts();
-  if (exact) options_.scene_options.limits = no_limits();
-  player_->next();
-  calls_.begin_tick(exact ? player_->tick().stopped : std::vector<StoppedCall>());
-  Result<void> begun = replay_beginning();
-  if (!begun) return begun;
-  take_tick(false);
-  publish();
-  return begun;
 }
 
 Result<void> Engine::replay_beginning() {
@@ -254,10 +228,10 @@ void Engine::replay_run(const TakeRun& run) {
     Draft draft(*std::exchange(ordered_, std::nullopt), *this);
     take(draft);
   } else {
-    auto fresh = std::make_unique<Stage>(link_, presets_, edits_);
-    SceneOptions scene_options = options_.scene_options;
-    scene_options.sources = taken.sources;
-    if (!fresh->run_beside(run.scene, *this, scene_options)) return;
+    auto fresh = new_stage();
+    SceneOptions run_options = scene_options();
+    run_options.sources = taken.sources;
+    if (!fresh->run_beside(run.scene, *this, run_options)) return;
     auto kept = player_->presets(run);
     Presets::Book book;
     if (kept) book = {std::move(kept->list), nullptr, kept->file};
@@ -265,14 +239,36 @@ void Engine::replay_run(const TakeRun& run) {
   }
 }
 
+// what comes in while a take has the hands: questions are answered
+void Engine::refuse_commands() {
+  for (; next_command_ < commands_.size(); next_command_++) {
+    const Command& command = commands_[next_command_];
+    for (const Message& message : command.messages) refuse_hand(message, command.origin);
+    if (command.evaluate != nullptr)
+      command.evaluate->answer({Evaluation::Kind::error, plays_ ? kPlays : kReplays, 0, 0, 0});
+  }
+  asks_ = link_.image_asks.load();
+}
+
+void Engine::refuse_hand(const Message& message, const Origin& origin) {
+  const std::string what = plain_name(message.address);
+  Outcome outcome = Outcome::refused(plays_ ? kPlays : kReplays);
+  if (plays_ && what == "/take/stop") {
+    take_ends_ = true;
+    outcome.kind = Outcome::Kind::answered;
+    outcome.answers.push_back({"/take/stopped", {}});
+  } else if (what == "/get" || what.starts_with("/list/")) {
+    outcome = stage_->dispatch.execute(message);
+  }
+  for (Message& answer : outcome.answers) push_out({Outgoing::To::sender, origin, std::move(answer)});
+  if (outcome.kind == Outcome::Kind::scenes && link_.ask_scenes) return link_.ask_scenes(message, origin);
+  if (outcome.kind != Outcome::Kind::answered) refuse(message.address, origin, outcome.error);
+}
+
 void Engine::replay_messages(Hands& hands) {
   link_.inbox.drain(commands_);
-  next_command_ = commands_.size();
-  asks_ = link_.image_asks.load();
-  for (const Command& command : commands_) {
-    for (const Message& message : command.messages) refuse(message.address, command.origin, kReplays);
-    if (command.evaluate != nullptr) command.evaluate->answer({Evaluation::Kind::error, kReplays, 0, 0, 0});
-  }
+  next_command_ = 0;
+  refuse_commands();
   answers_taken_ = true;
   for (const TakeMessage& taken : player_->tick().messages) {
     Message message = taken.message;

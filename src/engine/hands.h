@@ -13,8 +13,8 @@ class Hands {
  public:
   Hands(World& world, Presets& presets, Edits& edits, ChangeNotes& notes)
       : world_(world), presets_(presets), edits_(edits), notes_(notes) {
-    const auto heard = [](void* who, NodeId id, const Row& row, bool later) {
-      static_cast<Hands*>(who)->heard(id, row, later);
+    const auto heard = [](void* who, NodeId id, const Row& row, bool later, const double* before) {
+      static_cast<Hands*>(who)->heard(id, row, later, before);
     };
     before_ = world.store().listen({heard, this});
   }
@@ -31,11 +31,11 @@ class Hands {
   }
 
  private:
-  void heard(NodeId id, const Row& row, bool later) {
+  void heard(NodeId id, const Row& row, bool later, const double* before) {
     presets_.release(id, row);
     if (!begun_) return;
-    edits_.heard(world_.store(), id, row, later);
-    if (!later) notes_.heard(world_.store(), id, row);
+    edits_.heard(world_.store(), id, row, later, before);
+    if (!later) notes_.heard(id, row, before);
   }
 
   World& world_;

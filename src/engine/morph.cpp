@@ -13,6 +13,9 @@ namespace limber {
 
 namespace {
 
+// steps whose things are fetched while others go on: after a tick of physics they are far off
+constexpr std::size_t kAhead = 48;
+
 constexpr std::array<std::string_view, 4> kEasings = {"linear", "smooth", "in", "out"};
 
 bool is_member(const Store& store, NodeId id) {
@@ -60,6 +63,9 @@ Morph::Morph(const Store& store, const PresetBinding& binding, Blend to, double 
     steps_.push_back({thing.id, &row, thing.number, static_cast<std::uint32_t>(values_.size()), false});
     values_.insert(values_.end(), now, now + row.width);
     values_.insert(values_.end(), values, values + row.width);
+    if (take(store, steps_.back())) return;
+    values_.resize(steps_.back().at);
+    steps_.pop_back();
   });
   left_ = steps_.size();
   index(store);
@@ -87,20 +93,44 @@ void Morph::release(NodeId id, const Row& row) {
 
 double Morph::part(double time) const { return seconds_ > 0 ? std::clamp((time - begin_) / seconds_, 0.0, 1.0) : 1; }
 
+// thing by thing, each with its effects: what has been looked at is still at hand
 bool Morph::advance(Store& store, double time) {
   if (structure_ != store.structure_version()) find_again(store);
   const double now = part(time);
   const double amount = now >= 1 ? 1 : eased(easing_, now);
-  std::array<double, 4> out{};
-  for (const Step& step : steps_) {
-    if (step.over || step.id.null()) continue;
-    const double* const from = values_.data() + step.at;
-    mix(*step.row, from, from + step.row->width, amount, out.data());
-    if (same_bits(out.data(), std::as_const(store).values(step.id, *step.row), step.row->width)) continue;
-    (void)store.set(step.id, *step.row,
-                    {out.data(), step.row->width});  // the row takes what lies between two of its own
+  for (std::size_t i = 0; i < steps_.size();) {
+    const NodeId id = steps_[i].id;
+    std::uint64_t rows = 0;
+    if (const std::size_t ahead = i + kAhead; ahead < steps_.size() && !steps_[ahead].id.null())
+      store.fetch(steps_[ahead].id);
+    for (; i < steps_.size() && steps_[i].id == id; i++) {
+      if (!id.null() && !steps_[i].over) rows |= go_on(store, steps_[i], amount);
+    }
+    if (rows != 0) store.run_effects(id, rows);
   }
   return now < 1 && left_ > 0;
+}
+
+// the row that was written, as a bit
+std::uint64_t Morph::go_on(Store& store, const Step& step, double amount) const {
+  const Row& row = *step.row;
+  const double* const from = values_.data() + step.at;
+  std::array<double, 4> out{};
+  mix(row, from, from + row.width, amount, out.data());
+  if (same_bits(out.data(), std::as_const(store).values(step.id, row), row.width)) return 0;
+  store.go_on(step.id, row, out.data());
+  return std::uint64_t{1} << row.index;
+}
+
+// Both ends as the row takes them, so that it takes all that lies between; false: it does not take them.
+bool Morph::take(const Store& store, const Step& step) {
+  const Row& row = *step.row;
+  for (double* const end : {&values_[step.at], &values_[step.at + row.width]}) {
+    std::array<double, 4> taken{};
+    if (!store.take(step.id, row, {end, row.width}, taken.data())) return false;
+    std::copy_n(taken.data(), row.width, end);
+  }
+  return true;
 }
 
 // things came or went: what stands under the same name goes on from where the morph is
@@ -122,6 +152,7 @@ void Morph::find_again(const Store& store) {
       if (!same) continue;
       step.id = thing->id;
       step.row = fit.row;
+      if (!take(store, step)) step.id = {};
       break;
     }
   }

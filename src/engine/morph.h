@@ -48,7 +48,9 @@ class Morph {
     bool over = false;
   };
   void index(const Store& store);
+  std::uint64_t go_on(Store& store, const Step& step, double amount) const;
   void find_again(const Store& store);
+  bool take(const Store& store, const Step& step);
 
   Blend to_;
   std::vector<std::string> except_;

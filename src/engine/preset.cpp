@@ -57,6 +57,22 @@ void PresetShape::give(std::uint32_t thing, std::uint32_t rows) {
   width_ += classes_[rows]->width;
 }
 
+std::uint32_t PresetShape::add_all(const PresetShape& from, std::uint32_t thing, std::uint32_t parent) {
+  const auto made = static_cast<std::uint32_t>(things_.size());
+  std::uint32_t i = thing;
+  do {
+    const Thing& its = from.things_[i];
+    const std::uint32_t number = add(i == thing ? parent : its.parent - thing + made, from.name(its));
+    if (its.rows != kNoRows) give(number, its.rows);
+  } while (++i < from.things_.size() && from.things_[i].parent >= thing);
+  return made;
+}
+
+std::uint32_t PresetShape::first_number(std::uint32_t thing) const {
+  while (thing < things_.size() && things_[thing].rows == kNoRows) thing++;
+  return thing < things_.size() ? things_[thing].at : width_;
+}
+
 std::uint32_t PresetShape::add_class(std::shared_ptr<const PresetClass> rows) {
   classes_.push_back(std::move(rows));
   return static_cast<std::uint32_t>(classes_.size() - 1);

@@ -64,6 +64,8 @@ class PresetShape {
   /// "/physics/body/my%20arm".
   std::string path(std::uint32_t thing) const;
   std::uint32_t width() const { return width_; }
+  /// Of a thing or, where it has none, of the first below it that has; of a shape like add_all() takes.
+  std::uint32_t first_number(std::uint32_t thing) const;
   std::size_t row_count() const;
   bool operator==(const PresetShape& other) const;
 
@@ -72,6 +74,9 @@ class PresetShape {
   /// Gives the thing rows; their numbers stand behind all that were given so far.
   void give(std::uint32_t thing, std::uint32_t rows);
   std::uint32_t add_class(std::shared_ptr<const PresetClass> rows);
+  /// A thing of another shape, which has these classes, and all below it; those of `from` stand parents first, each
+  /// with what is below it. The answer: its number here.
+  std::uint32_t add_all(const PresetShape& from, std::uint32_t thing, std::uint32_t parent);
 
  private:
   std::vector<Thing> things_;

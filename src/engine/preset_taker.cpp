@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <bit>
-#include <map>
 #include <unordered_map>
 #include <utility>
 
@@ -41,13 +40,19 @@ PresetRow preset_row(const Row& row) {
 
 class PresetTaker::Planning {
  public:
-  Planning(const Store& store, const PresetChoice& choice) : store_(store) { plan_.choice = choice; }
+  /// `before`: the plan of the same choice when less had come or gone, or null; it stays until this is finished.
+  Planning(const Store& store, const PresetChoice& choice, const Plan* before) : store_(store), before_(before) {
+    plan_.choice = choice;
+    plan_.structure = store.structure_version();
+  }
 
   /// What the patterns reach. First, and once.
   Result<void> begin() {
     Result<void> chosen = choose();
     things_.assign(store_.view()->slot_count, 0);
+    plan_.slots.push_back(store_.root().slot);
     way_.push_back(store_.root());
+    if (before_ != nullptr) begin_with(*before_);
     return chosen;
   }
   /// Looks at so many things; true: at all of them.
@@ -56,6 +61,10 @@ class PresetTaker::Planning {
       if (count-- == 0) return false;
       const NodeId id = way_.back();
       way_.pop_back();
+      if (before_ != nullptr && id != store_.root() && store_.changed(id) <= before_->structure) {
+        keep(id);
+        continue;
+      }
       add(id);
       const std::span<const NodeId> children = store_.children(id);
       way_.insert(way_.end(), children.rbegin(), children.rend());
@@ -69,8 +78,8 @@ class PresetTaker::Planning {
     plan_.shape = shape_;
     return std::move(plan_);
   }
-  static Result<Plan> make(const Store& store, const PresetChoice& choice) {
-    Planning planning(store, choice);
+  static Result<Plan> make(const Store& store, const PresetChoice& choice, const Plan* before) {
+    Planning planning(store, choice, before);
     if (const Result<void> begun = planning.begin(); !begun) return Error{begun.error()};
     (void)planning.go(SIZE_MAX);
     return planning.finish();
@@ -105,12 +114,6 @@ class PresetTaker::Planning {
     std::uint64_t properties = 0;
     std::vector<const Row*> picky;  // of these some things take none: the mass of a part that never moves
   };
-  // some rows of a class, as a thing that has them gives them
-  struct Cut {
-    std::uint32_t rows = 0;
-    std::vector<Piece> pieces;  // from where the thing's own numbers begin
-  };
-
   const Kind& kind_of(const Table& table) {
     if (last_kind_.first == &table) return *last_kind_.second;
     const auto [known, fresh] = kinds_.try_emplace(&table);
@@ -149,10 +152,46 @@ class PresetTaker::Planning {
     }
     if (rows == 0) return;
     const Cut& cut = cut_of(table, rows);
+    const std::uint32_t at = shape_->width();
     shape_->give(thing(id), cut.rows);
     const NodeSlot& slot = store_.view()->slots[id.slot];
     for (const Piece& piece : cut.pieces)
-      append({(piece.live ? slot.live : slot.kept) + piece.from, piece.count, piece.live}, plan_.pieces);
+      append({(piece.live ? slot.live : slot.kept) + piece.from, piece.count, piece.live, at + piece.at}, plan_.pieces);
+  }
+
+  void begin_with(const Plan& before) {
+    before_things_.assign(things_.size(), 0);
+    for (std::uint32_t i = 0; i < before.slots.size(); i++) before_things_[before.slots[i]] = i;
+    for (const auto& rows : before.shape->classes()) shape_->add_class(rows);
+    plan_.cuts = before.cuts;
+  }
+
+  // a thing and all below it, which stand as they stood
+  void keep(NodeId id) {
+    const std::uint32_t first = before_things_[id.slot];
+    if (first == 0) return;  // nothing there has rows
+    const std::uint32_t begin = shape_->width();
+    const std::uint32_t made = shape_->add_all(*before_->shape, first, thing(store_.parent(id)));
+    const auto count = static_cast<std::uint32_t>(shape_->things().size()) - made;
+    for (std::uint32_t i = 0; i < count; i++) {
+      plan_.slots.push_back(before_->slots[first + i]);
+      things_[plan_.slots.back()] = made + i;
+    }
+    keep_pieces(before_->shape->first_number(first), begin, shape_->width() - begin);
+  }
+
+  // so many numbers from a place in the preset before
+  void keep_pieces(std::uint32_t from, std::uint32_t to, std::uint32_t count) {
+    const std::vector<Piece>& pieces = before_->pieces;
+    auto at = std::upper_bound(pieces.begin(), pieces.end(), from,
+                               [](std::uint32_t number, const Piece& piece) { return number < piece.at; });
+    if (count > 0) --at;
+    for (std::uint32_t done = 0; done < count; ++at) {
+      const std::uint32_t skipped = from + done - at->at;
+      const std::uint32_t taken = std::min(at->count - skipped, count - done);
+      append({at->from + skipped, taken, at->live, to + done}, plan_.pieces);
+      done += taken;
+    }
   }
 
   static void append(const Piece& piece, std::vector<Piece>& pieces) {
@@ -171,6 +210,7 @@ class PresetTaker::Planning {
     if (known == 0) {
       const std::uint32_t parent = thing(store_.parent(id));
       known = shape_->add(parent, store_.name(id));
+      plan_.slots.push_back(id.slot);
     }
     return known;
   }
@@ -178,27 +218,28 @@ class PresetTaker::Planning {
   const Cut& cut_of(const Table& table, std::uint64_t rows) {
     const std::pair<const Table*, std::uint64_t> key{&table, rows};
     if (last_cut_.second != nullptr && last_cut_.first == key) return *last_cut_.second;
-    const auto [known, fresh] = cuts_.try_emplace(key);
+    const auto [known, fresh] = plan_.cuts.try_emplace(key);
     Cut& cut = known->second;
     last_cut_ = {key, &cut};
     if (!fresh) return cut;
     auto made = std::make_shared<PresetClass>();
     for (const Row& row : table.rows()) {
       if ((rows >> row.index & 1u) == 0) continue;
+      append({row.offset, row.width, row.live, made->width}, cut.pieces);
       made->add(preset_row(row));
-      append({row.offset, row.width, row.live}, cut.pieces);
     }
     cut.rows = shape_->add_class(std::move(made));
     return cut;
   }
 
   const Store& store_;
+  const Plan* before_;
+  std::vector<std::uint32_t> before_things_;  // by slot
   Plan plan_;
   std::shared_ptr<PresetShape> shape_ = std::make_shared<PresetShape>();
   std::unordered_map<std::uint32_t, std::uint64_t> chosen_;  // by slot, what the patterns reach
   bool part_chosen_ = false;
   std::unordered_map<const Table*, Kind> kinds_;
-  std::map<std::pair<const Table*, std::uint64_t>, Cut> cuts_;
   // neighbours are alike
   std::pair<const Table*, const Kind*> last_kind_{};
   std::pair<std::pair<const Table*, std::uint64_t>, const Cut*> last_cut_{};
@@ -212,6 +253,7 @@ PresetTaker::~PresetTaker() = default;
 void PresetTaker::forget_store() {
   plans_.clear();
   ahead_.reset();
+  before_.reset();
   quiet_ = 0;
 }
 
@@ -219,12 +261,21 @@ void PresetTaker::forget_store() {
 void PresetTaker::follow(const Store& store) {
   if (structure_ == store.structure_version()) return;
   structure_ = store.structure_version();
-  forget_store();
+  ahead_.reset();
+  quiet_ = 0;
+  for (Plan& plan : plans_) {
+    if (plan.choice == PresetChoice{}) before_ = std::move(plan);
+  }
+  plans_.clear();
 }
 
 const PresetTaker::Plan* PresetTaker::known(const PresetChoice& choice) const {
   const auto at = std::find_if(plans_.begin(), plans_.end(), [&](const Plan& plan) { return plan.choice == choice; });
   return at == plans_.end() ? nullptr : &*at;
+}
+
+const PresetTaker::Plan* PresetTaker::before(const PresetChoice& choice) const {
+  return before_ && before_->choice == choice ? &*before_ : nullptr;
 }
 
 const PresetTaker::Plan& PresetTaker::keep(Plan plan) {
@@ -237,7 +288,7 @@ void PresetTaker::prepare(const Store& store) {
   if (quiet_ <= kQuiet) quiet_++;
   if (quiet_ <= kQuiet || known({}) != nullptr) return;
   if (ahead_ == nullptr) {
-    ahead_ = std::make_unique<Planning>(store, PresetChoice{});
+    ahead_ = std::make_unique<Planning>(store, PresetChoice{}, before({}));
     (void)ahead_->begin();  // there are no patterns
   }
   if (!ahead_->go(kSlice)) return;
@@ -245,16 +296,23 @@ void PresetTaker::prepare(const Store& store) {
   ahead_.reset();
 }
 
-Result<std::shared_ptr<const Preset>> PresetTaker::take(const Store& store, std::string name,
-                                                        const PresetChoice& choice) {
+// it stays until the next is asked for
+Result<const PresetTaker::Plan*> PresetTaker::plan_for(const Store& store, const PresetChoice& choice) {
   follow(store);
-  if (const Plan* plan = known(choice)) return copy(store, *plan, std::move(name));
+  if (const Plan* plan = known(choice)) return plan;
   const bool begun = ahead_ != nullptr && choice == PresetChoice{};
   if (begun) (void)ahead_->go(SIZE_MAX);
-  Result<Plan> made = begun ? ahead_->finish() : Planning::make(store, choice);
+  Result<Plan> made = begun ? ahead_->finish() : Planning::make(store, choice, before(choice));
   if (begun) ahead_.reset();
   if (!made) return Error{made.error()};
-  return copy(store, keep(std::move(*made)), std::move(name));
+  return &keep(std::move(*made));
+}
+
+Result<std::shared_ptr<const Preset>> PresetTaker::take(const Store& store, std::string name,
+                                                        const PresetChoice& choice) {
+  const Result<const Plan*> plan = plan_for(store, choice);
+  if (!plan) return Error{plan.error()};
+  return copy(store, **plan, std::move(name));
 }
 
 std::shared_ptr<const Preset> PresetTaker::copy(const Store& store, const Plan& plan, std::string name) {
@@ -269,7 +327,7 @@ std::shared_ptr<const Preset> PresetTaker::copy(const Store& store, const Plan& 
 }
 
 std::shared_ptr<const Preset> PresetTaker::take_script(const Store& store) {
-  Result<Plan> plan = Planning::make(store, {});  // without patterns nothing can be wrong
+  Result<Plan> plan = Planning::make(store, {}, nullptr);  // without patterns nothing can be wrong
   auto preset = std::make_shared<Preset>(*copy(store, *plan, "script"));
   const Result<Place> scene = find_place(store, "/scene", false);
   if (!scene || scene->row != nullptr) return preset;

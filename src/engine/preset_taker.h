@@ -1,10 +1,14 @@
 // PresetTaker: copies chosen values of the live world into a preset. Which numbers these are is found out once for as
-// long as nothing comes or goes; after that a preset is a few copies of memory. [sim]
+// long as nothing comes or goes; after that a preset is a few copies of memory. What came or went is found out without
+// a look at the rest. [sim]
 #pragma once
 
 #include <cstdint>
+#include <map>
 #include <memory>
+#include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "base/result.h"
@@ -28,6 +32,8 @@ class PresetTaker {
   /// A little of the way to a preset of every property, so that the first one in a large world costs no more than the
   /// next: once a tick.
   void prepare(const Store& store);
+  /// All of the way, where there is time.
+  void make_ready(const Store& store) { (void)plan_for(store, {}); }
   /// Whether that is done.
   bool ready(const Store& store) const { return structure_ == store.structure_version() && known({}) != nullptr; }
   /// What `choice` names, as it is now. Errors: a pattern that is none, is too much work, or reaches no property.
@@ -43,11 +49,21 @@ class PresetTaker {
     std::uint32_t from = 0;
     std::uint32_t count = 0;
     bool live = false;
+    std::uint32_t at = 0;  // in the preset
   };
+  // some rows of a class, as a thing that has them gives them
+  struct Cut {
+    std::uint32_t rows = 0;
+    std::vector<Piece> pieces;  // from where the thing's own numbers begin
+  };
+  using Cuts = std::map<std::pair<const Table*, std::uint64_t>, Cut>;
   struct Plan {
     PresetChoice choice;
     std::shared_ptr<const PresetShape> shape;
     std::vector<Piece> pieces;
+    std::uint64_t structure = 0;       // the store's
+    std::vector<std::uint32_t> slots;  // of the shape's things
+    Cuts cuts;                         // the shape's classes
   };
   class Planning;
 
@@ -56,8 +72,11 @@ class PresetTaker {
   void follow(const Store& store);
   const Plan* known(const PresetChoice& choice) const;
   const Plan& keep(Plan plan);
+  Result<const Plan*> plan_for(const Store& store, const PresetChoice& choice);
+  const Plan* before(const PresetChoice& choice) const;
 
   std::vector<Plan> plans_;          // those that hold
+  std::optional<Plan> before_;       // of every property, before something came or went
   std::unique_ptr<Planning> ahead_;  // of every property, on its way
   std::uint64_t structure_ = 0;      // the plans'
   int quiet_ = 0;

@@ -58,8 +58,9 @@ Presets::Book Presets::read(const std::string& scene, std::function<void(const s
   return book;
 }
 
-Presets::Book Presets::open(Book book) {
-  if (book.file == file_) return book;
+Presets::Book Presets::open(Book book) { return book.file == file_ ? std::move(book) : exchange(std::move(book)); }
+
+Presets::Book Presets::exchange(Book book) {
   std::swap(list_, book.list);
   std::swap(keeper_, book.keeper);
   std::swap(file_, book.file);

@@ -41,6 +41,8 @@ class Presets {
   /// From now on it is this one; but a file that is open already stays as it is. The answer: the other one, which
   /// must go where a thread may wait for a disk. [sim]
   Book open(Book book);
+  /// The same, whichever file is open. [sim]
+  Book exchange(Book book);
   /// What "script" is from now on: as the scene's last good run describes everything.
   void scene_says(std::shared_ptr<const Preset> script) { script_ = std::move(script); }
   /// From now on it is another store; running morphs end.
@@ -61,6 +63,8 @@ class Presets {
   void advance(World& world);
   /// Makes ready for a store; once a tick.
   void prepare(const World& world) { taker_.prepare(world.store()); }
+  /// The same at once, where no tick waits.
+  void make_ready(const World& world) { taker_.make_ready(world.store()); }
   /// These values are in force, as after a recall; the answer: what was left out.
   Result<std::string> bring_back(World& world, const std::shared_ptr<const Preset>& values) {
     return go(world, Blend::of(values), 0, Easing::linear);

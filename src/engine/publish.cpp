@@ -50,6 +50,8 @@ void Publisher::publish(bool paused, double speed_reached, const PhaseTimes& tim
     snapshot->drawing = drawing_;
     snapshot->visuals_version = version;
   }
+  snapshot->overlay.clear();
+  if (world_.overlay().on()) world_.overlay().gather(snapshot->overlay);
   out_.publish(snapshot);
 }
 

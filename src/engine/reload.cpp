@@ -14,7 +14,8 @@ namespace limber {
 Reload::Reload(std::string file, ScriptHost& host, PerformerHand& hand)
     : file_(std::move(file)), host_(host), hand_(hand) {}
 
-void Reload::begin(const Stage& stage, const SceneOptions& options, const std::string& file) {
+void Reload::begin(const Stage& stage, const SceneOptions& options, const std::string& file,
+                   std::vector<SourceFile> tried) {
   file_ = file;
   options_ = options;
   description_ = std::make_shared<const Description>(describe(stage.world));
@@ -23,7 +24,7 @@ void Reload::begin(const Stage& stage, const SceneOptions& options, const std::s
   sources_ = stage.scene == nullptr ? nullptr : stage.scene->sources();
   ran_with_.clear();
   if (stage.scene != nullptr) stage.scene->rerun_values(ran_with_);
-  keep_files({});
+  keep_files(std::move(tried));
   if (stage.scene != nullptr) say_mended();
 }
 

@@ -26,10 +26,13 @@ class Reload {
   Reload(std::string file, ScriptHost& host, PerformerHand& hand);
 
   /// A stage whose scene, of that file, has just run well from its start, or has none: nothing else was done to it.
-  /// [sim]
-  void begin(const Stage& stage, const SceneOptions& options, const std::string& file);
+  /// `tried`: what a run that failed has read. [sim]
+  void begin(const Stage& stage, const SceneOptions& options, const std::string& file,
+             std::vector<SourceFile> tried = {});
   /// What a draft is made from now. `again`: of what the last good run has read, not of the disk. [sim]
   DraftOrder order(const Stage& stage, bool again);
+  /// What scripts of later drafts may take. [sim]
+  void limit(const ScriptLimits& limits) { options_.limits = limits; }
   /// Applies a draft that was made from such an order. [sim]
   End take(Draft& draft, Stage& stage);
   /// Whether a parameter with `rerun` has another value than at the last call and the last order. [sim]

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "engine/drawing.h"
+#include "sim/overlay.h"
 
 namespace limber {
 
@@ -59,6 +60,7 @@ struct Snapshot {
   std::shared_ptr<const Drawing> drawing;
   std::vector<double> visuals;        ///< For material_of(), camera_of(), look_of().
   std::uint64_t visuals_version = 0;  ///< Of one drawing: another when `visuals` may be.
+  std::vector<OverlayMark> overlay;   ///< Empty while the debug picture is off.
 };
 
 }  // namespace limber

@@ -16,8 +16,8 @@
 namespace limber {
 
 struct Stage {
-  Stage(EngineLink& link, Presets& presets, Edits& edits)
-      : world(store),
+  Stage(EngineLink& link, Presets& presets, Edits& edits, const WorldSetup& setup)
+      : world(store, setup),
         transport(world),
         counters(store, link.counters),
         preset_node(world, presets),

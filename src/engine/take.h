@@ -4,6 +4,7 @@
 #pragma once
 
 #include <cstdint>
+#include <filesystem>
 #include <map>
 #include <memory>
 #include <optional>
@@ -38,6 +39,9 @@ struct TakeHand {
   PresetList presets;  ///< Of a blend: one or two.
   double amount = 0;
 };
+
+/// What a take is called by its file: no folder, no ending.
+inline std::string take_title(const std::string& file) { return std::filesystem::path(file).stem().string(); }
 
 /// How the show stood when the take began: right before a scene's run from its start.
 struct TakeBegin {

@@ -12,6 +12,7 @@ const Table& TakeNode::table() {
           live(readout(boolean("replays", false, "It is replayed; hands have no effect then."))),
           live(readout(integer("ticks", 0, 0, kUnbounded, "How many it has so far; of a replay: how far that is."))),
           live(readout(integer("whole", 0, 0, kUnbounded, "How many ticks the take has that is replayed."))),
+          live(readout(boolean("plays", false, "It plays in the place of a show; /take/stop brings the hands back."))),
       });
   return table;
 }
@@ -25,6 +26,7 @@ void TakeNode::tell(const Told& told) {
   out[0] = told.replays ? 1 : 0;
   out[1] = static_cast<double>(told.ticks);
   out[2] = static_cast<double>(told.whole);
+  out[3] = told.plays ? 1 : 0;
 }
 
 }  // namespace limber

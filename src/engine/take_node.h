@@ -20,6 +20,7 @@ class TakeNode {
     bool replays = false;     ///< It is replayed, not recorded.
     std::uint64_t ticks = 0;  ///< So far.
     std::uint64_t whole = 0;  ///< Of a replay: how many there are.
+    bool plays = false;       ///< It is replayed in the place of a show.
   };
   /// Allocates nothing while the take is the same.
   void tell(const Told& told);

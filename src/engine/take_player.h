@@ -36,6 +36,8 @@ class TakePlayer {
   bool steps_next() const { return ahead_ && ahead_->running; }
   bool over() const { return over_; }
   const TakeTick& tick() const { return tick_; }
+  /// The tick's calls that are stopped again; none where the runs may part.
+  std::vector<StoppedCall> stopped() const { return current_ ? std::vector<StoppedCall>() : tick_.stopped; }
   /// Ticks replayed so far, and those of the whole take; where time stood still does not count.
   std::uint64_t ticks() const { return found_.ticks; }
   std::uint64_t whole() const { return whole_; }

@@ -39,7 +39,7 @@ std::vector<BehaviorEntry> behavior_entries(const Tree& tree, std::uint32_t body
     tree.each_child(groups, [&](std::uint32_t node) {
       known[tree.name(node)] = entries.size();
       if (body == 0)
-        entries.push_back({std::string(tree.name(node)), tree.path(node), type_of(node), true, {node}, 0, 0, {}});
+        entries.push_back({std::string(tree.name(node)), tree.path(node), type_of(node), true, {node}, 0, 0, 0, {}});
       return true;
     });
   }
@@ -54,7 +54,7 @@ std::vector<BehaviorEntry> behavior_entries(const Tree& tree, std::uint32_t body
       if (fresh || body != 0) {
         std::string pattern =
             body != 0 ? tree.path(node) : fmt::format("/physics/body/*/behavior/{}", escape_name(tree.name(node)));
-        entries.push_back({std::string(tree.name(node)), std::move(pattern), type_of(node), false, {}, 0, 0, {}});
+        entries.push_back({std::string(tree.name(node)), std::move(pattern), type_of(node), false, {}, 0, 0, 0, {}});
         at->second = entries.size() - 1;
       }
       entries[at->second].nodes.push_back(node);
@@ -70,8 +70,43 @@ std::vector<BehaviorEntry> behavior_entries(const Tree& tree, std::uint32_t body
   return entries;
 }
 
+namespace {
+
+int place_of(const Image& image, std::uint32_t node) {
+  const double* const place = numbers_of(image, node, "place");
+  return place == nullptr ? 0 : static_cast<int>(place[0]);
+}
+
+}  // namespace
+
+void order_entries(std::vector<BehaviorEntry>& entries) {
+  std::ranges::stable_sort(entries, {}, &BehaviorEntry::place);
+}
+
+std::vector<Message> put_past(const Image& image, const BehaviorEntry& entry, const BehaviorEntry& neighbor) {
+  const auto message = [](const std::string& path, int place) {
+    return Message{path + "/place", {Arg::of(static_cast<double>(place))}};
+  };
+  if (entry.group) return {message(entry.pattern, neighbor.place)};
+  const Tree& tree = *image.tree;
+  std::vector<Message> messages;
+  bool alike = true;
+  for (const std::uint32_t node : entry.nodes) {
+    // a group's instance on that body is called as the group is
+    const std::uint32_t other = child_called(tree, tree.nodes()[node].parent, neighbor.name);
+    const int place = other == 0 ? 0 : place_of(image, other);
+    alike =
+        alike && place != 0 && place == place_of(image, entry.nodes.front()) + (neighbor.place < entry.place ? -1 : 1);
+    if (place != 0) messages.push_back(message(tree.path(node), place));
+  }
+  if (alike && messages.size() > 1)
+    return {message(entry.pattern, place_of(image, entry.nodes.front()) + (neighbor.place < entry.place ? -1 : 1))};
+  return messages;
+}
+
 void renew_entry(const Image& image, BehaviorEntry& entry) {
   entry.active = 0;
+  entry.place = entry.nodes.empty() ? 0 : place_of(image, entry.nodes.front());
   entry.time = 0;
   entry.error.clear();
   for (const std::uint32_t node : entry.nodes) {

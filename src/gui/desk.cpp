@@ -16,6 +16,9 @@ namespace {
 constexpr double kAskEvery = 1.0 / 20;  // s; the simulation gives a hundredth of its time to images at most
 constexpr double kNoticeLasts = 2.5;    // s
 constexpr double kRefusalStays = 8;     // s; a reason is read
+constexpr const char* kStyle = "/visuals/look/style";
+constexpr const char* kEye = "/visuals/camera/eye";
+constexpr const char* kTarget = "/visuals/camera/target";
 
 }  // namespace
 
@@ -52,6 +55,7 @@ std::uint64_t Desk::send(std::string address, std::vector<Arg> args) {
 
 void Desk::set(const PlacedRow& at, const HandValues::Values& values, bool held) {
   if (!std::exchange(holding_, held)) gesture_++;
+  if (at.path == kStyle) settings.style = at.place.row->choices[static_cast<std::size_t>(values[0])];
   hand_.set(at.path, values, send(set_message(at.path, *at.place.row, values)));
 }
 
@@ -71,6 +75,11 @@ void Desk::step_back(const char* action, const char* what, const char* none) {
   const std::string_view of = at ? text(at->place) : std::string_view();
   say(of.empty() ? std::string(none) : std::string(of));
   send(action);  // whatever the image says: it may be older than what a hand has just done
+}
+
+void Desk::toggle_overlay() {
+  constexpr const char* kRow = "/visuals/look/overlay";
+  send(kRow, {Arg::of(number(kRow) == 0 ? 1.0 : 0.0)});
 }
 
 void Desk::undo() { step_back("/edit/undo", "/edit/undo_of", "there is nothing to undo"); }
@@ -109,6 +118,7 @@ TakeState Desk::take() const {
   if (take.name.empty()) return take;
   const double timestep = number("/physics/sim/timestep");
   take.replays = number("/take/replays") != 0;
+  take.plays = number("/take/plays") != 0;
   take.seconds = timestep * number("/take/ticks");
   take.whole = timestep * number("/take/whole");
   return take;
@@ -117,6 +127,24 @@ TakeState Desk::take() const {
 void Desk::choose(std::string path) {
   selected = std::move(path);
   reveal = selected;
+}
+
+void Desk::keep_view(std::size_t number) {
+  const auto eye = find(kEye);
+  const auto target = find(kTarget);
+  View view;
+  if (!eye || !target || !values(*eye, view.eye) || !values(*target, view.target)) return;
+  views_.at(number - 1) = view;
+  say(fmt::format("view {} is kept", number));
+}
+
+void Desk::go_to_view(std::size_t number) {
+  const std::optional<View>& view = views_.at(number - 1);
+  if (!view) return say(fmt::format("there is no view {0}: Ctrl+Shift+{0} keeps one", number));
+  const auto point = [](const HandValues::Values& v) {
+    return std::vector{Arg::of(v[0]), Arg::of(v[1]), Arg::of(v[2])};
+  };
+  for (const char* row : {kEye, kTarget, kEye}) send(row, point(row == kEye ? view->eye : view->target));
 }
 
 void Desk::recall(double number) {
@@ -150,13 +178,26 @@ void Desk::hear_answers() {
   }
 }
 
+// the look that was chosen in the show before; a replay is as it was
+void Desk::prefer_style() {
+  if (settings.style.empty()) return;
+  const std::optional<PlacedRow> row = find(kStyle);
+  if (!row || take().replays) return;
+  const std::vector<std::string>& styles = row->place.row->choices;
+  const auto found = std::ranges::find(styles, settings.style);
+  if (found == styles.end()) return;
+  send("/visuals/look/prefer", {Arg::of(static_cast<double>(found - styles.begin()))});
+}
+
 void Desk::look(double clock_now) {
   clock = clock_now;
   hear_answers();
   now = link.snapshots.read();
   if (std::shared_ptr<const Image> newest = link.images.read(); newest != nullptr && newest != image) {
+    const bool first = image == nullptr;
     image = std::move(newest);
     hand_.heard(image->asks);
+    if (first) prefer_style();
   }
   const bool waiting = image == nullptr || image->asks < asked_;
   if (asked_ == 0 || (!waiting && clock - asked_at_ >= kAskEvery)) {

@@ -2,6 +2,7 @@
 // panels share among themselves. Nothing of the world is kept here.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <functional>
 #include <memory>
@@ -31,6 +32,7 @@ struct GuiOptions;
 struct TakeState {
   std::string name;  ///< Empty: there is none.
   bool replays = false;
+  bool plays = false;  ///< In the place of a show: /take/stop brings the hands back.
   double seconds = 0;  ///< So far; of a replay: where it is.
   double whole = 0;    ///< Of a replay: how long the take is.
   bool recorded() const { return !name.empty() && !replays; }
@@ -59,6 +61,7 @@ class Desk {
   std::vector<std::string> plots;  ///< Addresses of rows that are plotted.
   bool focus_search = false;       ///< The next frame's search field takes the keyboard.
   bool help = false;               ///< F2.
+  int move_behavior = 0;           ///< The chosen behaviour is to act earlier (-1) or later (1).
   std::string notice;              ///< A line that is shown for a while, such as what was copied.
   double notice_until = 0;         ///< s
   std::string refusal;             ///< The newest message of the panel's that was refused, and why.
@@ -95,6 +98,11 @@ class Desk {
 
   /// The thing of that address is chosen, and shown in the tree.
   void choose(std::string path);
+  /// The debug picture, on and off.
+  void toggle_overlay();
+  /// The camera's view, kept by a number from 1 to 9 as long as the window is open, and taken again.
+  void keep_view(std::size_t number);
+  void go_to_view(std::size_t number);
   /// A preset by its number from 1, in the time that is set.
   void recall(double number);
 
@@ -106,6 +114,8 @@ class Desk {
   TakeState take() const;
   /// A take begins, or ends.
   void record() { send(take().recorded() ? "/take/stop" : "/take/record"); }
+  /// The newest take plays in the place of the show, or ends.
+  void play_take() { send(take().plays ? "/take/stop" : "/take/play"); }
 
   /// Takes back what a hand has set last, whichever it was, and does it again.
   void undo();
@@ -118,8 +128,14 @@ class Desk {
 
  private:
   void hear_answers();
+  void prefer_style();
   void step_back(const char* action, const char* what, const char* none);
 
+  /// Rows of the camera; each of the two keeps the other where it is.
+  struct View {
+    HandValues::Values eye{}, target{};
+  };
+  std::array<std::optional<View>, 9> views_;
   HandValues hand_;
   bool holding_ = false;
   std::uint16_t gesture_ = 0;

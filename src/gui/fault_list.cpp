@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cctype>
 
+#include <fmt/format.h>
+
 namespace limber {
 
 Fault fault_of(const LogLine& line) {
@@ -30,6 +32,13 @@ void FaultList::hear(const LogLine& line) {
   if (line.level != LogLevel::warning && line.level != LogLevel::error) return;
   if (faults_.size() >= kMost) faults_.pop_front();
   faults_.push_back(fault_of(line));
+}
+
+std::string FaultList::count_text() const {
+  const std::size_t warnings = faults_.size() - errors();
+  std::string text = errors() == 0 ? "" : fmt::format("{}", errors());
+  if (warnings == 0) return text;
+  return text + fmt::format("{}{} warning{}", text.empty() ? "" : " + ", warnings, warnings == 1 ? "" : "s");
 }
 
 std::size_t FaultList::errors() const {

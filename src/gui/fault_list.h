@@ -27,6 +27,8 @@ class FaultList {
   const std::deque<Fault>& faults() const { return faults_; }
   /// Without warnings.
   std::size_t errors() const;
+  /// "2", "2 + 1 warning", "3 warnings", or nothing.
+  std::string count_text() const;
 
  private:
   std::deque<Fault> faults_;

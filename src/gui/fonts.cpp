@@ -7,6 +7,7 @@
 
 #include <fmt/format.h>
 #include <imgui.h>
+#include <imgui_internal.h>
 
 namespace limber {
 
@@ -28,6 +29,18 @@ constexpr Wanted kCode{"JetBrains Mono", "fonts-jetbrains-mono",
 constexpr ImWchar kLetters[] = {0x20,   0x17f,  0x370,  0x3ff,  0x400,  0x52f,  0x1e00, 0x1eff, 0x2010, 0x2044, 0x2070,
                                 0x209f, 0x20a0, 0x20bf, 0x2100, 0x214f, 0x2190, 0x21ff, 0x2200, 0x22ff, 0};
 
+// of Debian's fonts-droid-fallback, fonts-noto-cjk, fonts-wqy-microhei, fonts-ipafont-gothic, fonts-nanum
+constexpr const char* kOthers[] = {
+    "usr/share/fonts/truetype/droid/DroidSansFallbackFull.ttf", "usr/share/fonts/opentype/noto/NotoSansCJK-Regular.ttc",
+    "usr/share/fonts/truetype/wqy/wqy-microhei.ttc", "usr/share/fonts/opentype/ipafont-gothic/ipag.ttf",
+    "usr/share/fonts/truetype/nanum/NanumGothic.ttf"};
+
+bool is_known(unsigned letter) {
+  for (const ImWchar* range = kLetters; range[0] != 0; range += 2)
+    if (letter >= range[0] && letter <= range[1]) return true;
+  return letter < kLetters[0];
+}
+
 std::string look_for(const Wanted& wanted, const std::string& root, std::vector<std::string>& said) {
   namespace fs = std::filesystem;
   std::error_code fault;
@@ -40,7 +53,8 @@ std::string look_for(const Wanted& wanted, const std::string& root, std::vector<
   return dejavu ? other.string() : "";
 }
 
-ImFont* load(const std::string& file, double pixels, const char* name) {
+ImFont* load(const std::string& file, double pixels, const char* name, const std::string& others,
+             const ImVector<ImWchar>& letters) {
   ImFontAtlas& atlas = *ImGui::GetIO().Fonts;
   ImFontConfig config;
   config.OversampleH = 2;
@@ -50,9 +64,14 @@ ImFont* load(const std::string& file, double pixels, const char* name) {
   const auto size = static_cast<float>(std::floor(pixels));
   ImFont* font = nullptr;
   if (!file.empty()) font = atlas.AddFontFromFileTTF(file.c_str(), size, &config, kLetters);
-  if (font != nullptr) return font;
-  config.SizePixels = size;
-  return atlas.AddFontDefault(&config);
+  if (font == nullptr) {
+    config.SizePixels = size;
+    font = atlas.AddFontDefault(&config);
+  }
+  if (others.empty() || letters.empty()) return font;
+  config.MergeMode = true;
+  atlas.AddFontFromFileTTF(others.c_str(), size, &config, letters.Data);
+  return font;
 }
 
 }  // namespace
@@ -61,16 +80,40 @@ FontFiles find_fonts(const std::string& root) {
   FontFiles files;
   files.words = look_for(kWords, root, files.said);
   files.code = look_for(kCode, root, files.said);
+  std::error_code fault;
+  for (const char* const other : kOthers) {
+    const std::filesystem::path file = std::filesystem::path(root) / other;
+    if (files.others.empty() && std::filesystem::is_regular_file(file, fault)) files.others = file.string();
+  }
   return files;
 }
 
-Fonts load_fonts(const FontFiles& files, double pixels) {
+bool gather_letters(std::string_view text, std::set<unsigned>& letters) {
+  bool fresh = false;
+  const char* at = text.data();
+  const char* const end = at + text.size();
+  while (at < end) {
+    unsigned letter = static_cast<unsigned char>(*at);
+    at += letter < 0x80 ? 1 : ImTextCharFromUtf8(&letter, at, end);
+    if (letter <= IM_UNICODE_CODEPOINT_MAX && letter != IM_UNICODE_CODEPOINT_INVALID && !is_known(letter))
+      fresh = letters.insert(letter).second || fresh;
+  }
+  return fresh;
+}
+
+Fonts load_fonts(const FontFiles& files, double pixels, const std::set<unsigned>& letters) {
   ImFontAtlas& atlas = *ImGui::GetIO().Fonts;
   atlas.Clear();
   atlas.Flags |= ImFontAtlasFlags_NoPowerOfTwoHeight;
+  ImVector<ImWchar> ranges;  // each a range of its own
+  for (const unsigned letter : letters) {
+    ranges.push_back(static_cast<ImWchar>(letter));
+    ranges.push_back(static_cast<ImWchar>(letter));
+  }
+  if (!ranges.empty()) ranges.push_back(0);
   Fonts fonts;
-  fonts.words = load(files.words, pixels, "words");
-  fonts.code = load(files.code, pixels * 17 / 16, "code");  // its letters are lower
+  fonts.words = load(files.words, pixels, "words", files.others, ranges);
+  fonts.code = load(files.code, pixels * 17 / 16, "code", files.others, ranges);  // its letters are lower
   atlas.Build();
   return fonts;
 }

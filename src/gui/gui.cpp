@@ -88,10 +88,10 @@ Gui::~Gui() {
 void Gui::renew_fonts(const GuiFrame& frame) {
   const double scale = std::clamp(frame.display_scale, 0.5, 4.0);
   const double pixels = std::floor(desk_.settings.text_size * scale);
-  if (pixels == pixels_) return;
+  if (pixels == pixels_ && !std::exchange(other_letters_, false)) return;
   pixels_ = pixels;
   desk_.scale = pixels / 16;
-  desk_.fonts = load_fonts(files_, pixels);
+  desk_.fonts = load_fonts(files_, pixels, letters_);
   apply_theme(desk_.scale);
   if (!options_.paints) {
     ImGui::GetIO().Fonts->SetTexID(nullptr);
@@ -99,6 +99,18 @@ void Gui::renew_fonts(const GuiFrame& frame) {
     ImGui_ImplOpenGL3_DestroyFontsTexture();
     ImGui_ImplOpenGL3_CreateFontsTexture();
   }
+}
+
+// names may have letters that the fonts lack: those alone are taken of a third, as it has some ten thousand
+void Gui::look_for_letters() {
+  if (desk_.image == nullptr || desk_.image->tree == letters_of_) return;
+  letters_of_ = desk_.image->tree;
+  const bool had = !letters_.empty();
+  for (std::uint32_t node = 0; node < letters_of_->nodes().size(); node++)
+    other_letters_ = gather_letters(letters_of_->name(node), letters_) || other_letters_;
+  if (!other_letters_ || !files_.others.empty()) return;
+  other_letters_ = false;
+  if (!had) log_warning("names have letters that no font here shows; apt-get install fonts-noto-cjk, say");
 }
 
 void Gui::frame(const GuiFrame& frame) {
@@ -114,6 +126,7 @@ void Gui::frame(const GuiFrame& frame) {
   }
   const std::vector<KeyPress> keys = input_.frame();
   desk_.look(frame.clock);
+  look_for_letters();
   desk_.names.clear();
   layout_ = lay_out(frame.width, frame.height, desk_.scale);
   hear_keys(keys);
@@ -158,6 +171,7 @@ void Gui::act(HotkeyAction action, const KeyPress& press) {
     settings.text_size = std::clamp(settings.text_size + by, PanelSettings::kSmallestText, PanelSettings::kLargestText);
     desk_.say(fmt::format("text of {:.0f} px", settings.text_size));
   };
+  const auto digit = static_cast<std::size_t>(press.key) - static_cast<std::size_t>(GuiKey::digit_1) + 1;
   switch (action) {
     case HotkeyAction::play_pause:
       if (desk_.now != nullptr) desk_.send(desk_.now->paused ? "/transport/play" : "/transport/pause");
@@ -173,6 +187,9 @@ void Gui::act(HotkeyAction action, const KeyPress& press) {
       break;
     case HotkeyAction::record:
       desk_.record();
+      break;
+    case HotkeyAction::play_take:
+      desk_.play_take();
       break;
     case HotkeyAction::panic:
       desk_.panic();
@@ -202,8 +219,23 @@ void Gui::act(HotkeyAction action, const KeyPress& press) {
       text_size(-1);
       break;
     case HotkeyAction::recall:
-      desk_.recall(static_cast<int>(press.key) - static_cast<int>(GuiKey::digit_1) + 1);
+      desk_.recall(static_cast<double>(digit));
       break;
+    case HotkeyAction::keep_view:
+      desk_.keep_view(digit);
+      break;
+    case HotkeyAction::go_to_view:
+      desk_.go_to_view(digit);
+      actions_.push_back(action);  // what is followed is followed no more
+      break;
+    case HotkeyAction::overlay:
+      desk_.toggle_overlay();
+      break;
+    case HotkeyAction::earlier:
+    case HotkeyAction::later:
+      desk_.move_behavior = action == HotkeyAction::earlier ? -1 : 1;
+      break;
+    case HotkeyAction::output:
     case HotkeyAction::full_screen:
     case HotkeyAction::home_view:
       actions_.push_back(action);
@@ -257,29 +289,32 @@ void Gui::draw_tabs(std::size_t slot, const std::vector<Seat*>& seats) {
   ImGui::PopID();
 }
 
-void Gui::draw_help() const {
+void Gui::draw_help() {
   const ImVec2 size = ImGui::GetIO().DisplaySize;
   ImGui::SetNextWindowPos({size.x / 2, size.y / 2}, 0, {0.5F, 0.5F});
   ImGui::SetNextWindowSizeConstraints({0, 0}, {size.x - 16, size.y - 16});
   ImGui::SetNextWindowFocus();
   ImGui::SetNextWindowBgAlpha(1);
   if (ImGui::Begin("##help", nullptr, kAbove | ImGuiWindowFlags_AlwaysAutoResize)) {
+    // closer together, then smaller, where there are too many lines for the window
+    const float lines = static_cast<float>(hotkeys().size()) + 7;
+    const float high = std::max(ImGui::GetFontSize(), desk_.fonts.code->FontSize);
+    const float room = (size.y - 16 - 2 * ImGui::GetStyle().WindowPadding.y) / lines;
+    ImGui::SetWindowFontScale(std::clamp(room / high, 0.5F, 1.0F));
     ImGui::TextUnformatted("Keys and hands");
     ImGui::Separator();
     const auto line = [&](const char* keys, const char* does) {
       ImGui::PushFont(desk_.fonts.code);
       ImGui::PushStyleColor(ImGuiCol_Text, packed(Tone::accent));
       ImGui::TextUnformatted(keys);
+      desk_.names.note(fmt::format("help:{}", keys));
       ImGui::PopStyleColor();
       ImGui::PopFont();
       ImGui::SameLine(ImGui::GetFontSize() * 11);
       ImGui::TextUnformatted(does);
     };
-    // closer together where there are too many lines for the window
-    const float lines = static_cast<float>(hotkeys().size()) + 7;
-    const float high = ImGui::GetTextLineHeight();
     ImVec2 spacing = ImGui::GetStyle().ItemSpacing;
-    spacing.y = std::clamp((size.y - 16 - 2 * ImGui::GetStyle().WindowPadding.y) / lines - high, 0.0F, spacing.y);
+    spacing.y = std::clamp(room - high, 0.0F, spacing.y);
     ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, spacing);
     for (const Hotkey& hotkey : hotkeys()) line(hotkey.shown, hotkey.does);
     ImGui::Separator();

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -73,12 +74,13 @@ class Gui {
   };
 
   void renew_fonts(const GuiFrame& frame);
+  void look_for_letters();
   void hear_keys(const std::vector<KeyPress>& keys);
   void act(HotkeyAction action, const KeyPress& press);
   void draw_slot(Slot slot);
   void draw_tabs(std::size_t slot, const std::vector<Seat*>& seats);
   void draw_mark(const Desk::Mark& mark) const;
-  void draw_help() const;
+  void draw_help();
   void draw_panic();
   void draw_notice() const;
 
@@ -91,7 +93,10 @@ class Gui {
   std::vector<Seat> seats_;
   std::array<std::size_t, static_cast<std::size_t>(Slot::count)> chosen_{};  // tab of each slot
   std::vector<HotkeyAction> actions_;
-  double pixels_ = 0;  // of the fonts
+  double pixels_ = 0;           // of the fonts
+  std::set<unsigned> letters_;  // of names, that the two fonts lack
+  std::shared_ptr<const Tree> letters_of_;
+  bool other_letters_ = false;  // since the fonts were made
   double last_clock_ = 0;
   bool painted_fonts_ = false;
 };

@@ -14,6 +14,7 @@ enum class HotkeyAction : std::uint8_t {
   step_back,
   rewind,
   record,
+  play_take,
   panic,
   reset,
   hide,
@@ -23,8 +24,14 @@ enum class HotkeyAction : std::uint8_t {
   redo,
   larger,
   smaller,
+  overlay,
+  earlier,
+  later,
+  output,
   full_screen,
   home_view,
+  keep_view,
+  go_to_view,
   recall,
 };
 
@@ -34,10 +41,11 @@ struct Hotkey {
   const char* shown = "";
   const char* does = "";
   bool while_typing = false;  ///< It acts where letters would be typed, too.
+  int keys = 1;               ///< So many in a row mean it, from that of `press` on: 1 to 8.
 };
 std::span<const Hotkey> hotkeys();
 
-/// What a press means; null: nothing. `typing`: a field takes letters. 1 to 8 are all `recall`.
+/// What a press means; null: nothing. `typing`: a field takes letters.
 const Hotkey* hotkey_of(const KeyPress& press, bool typing);
 
 }  // namespace limber

@@ -110,6 +110,9 @@ void draw_icon(Icon icon, float x, float y, float half, std::uint32_t color) {
       pen.line(pen.at(-0.75F, 0), pen.at(0.75F, 0));
       pen.line(pen.at(0, -0.75F), pen.at(0, 0.75F));
       break;
+    case Icon::up:
+      pen.triangle(pen.at(-0.7F, 0.4F), pen.at(0, -0.6F), pen.at(0.7F, 0.4F));
+      break;
     case Icon::down:
       pen.triangle(pen.at(-0.7F, -0.4F), pen.at(0.7F, -0.4F), pen.at(0, 0.6F));
       break;

@@ -23,6 +23,7 @@ enum class Icon : std::uint8_t {
   warning,
   close,
   plus,
+  up,
   down,
   right
 };

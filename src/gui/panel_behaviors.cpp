@@ -1,6 +1,7 @@
 // Behaviours: switched on and off by name, for all bodies or the chosen one; the time they take, why one rests; add and
 // remove.
 #include <algorithm>
+#include <utility>
 
 #include <fmt/format.h>
 #include <imgui.h>
@@ -25,14 +26,27 @@ class BehaviorsPanel : public Panel {
       if (answer.said.kind == Evaluation::Kind::error)
         desk.say(answer.said.text.substr(0, answer.said.text.find('\n')));
     }
+    moves_ += std::exchange(desk.move_behavior, 0);
+    if (desk.image == nullptr || (desk.settings.hidden && moves_ == 0)) return;
+    renew(desk);
+    // one after the other: each starts from what the one before has made of the list
+    if (moves_ == 0 || desk.image->asks < moved_) return;
+    move(desk, moves_ > 0 ? 1 : -1);
+    moves_ -= moves_ > 0 ? 1 : -1;
   }
 
   void draw(Desk& desk) override {
-    renew(desk);
     const float side = ImGui::GetFrameHeight();
     ImGui::TextDisabled("%s", body_ == 0 ? "of all bodies" : std::string(desk.image->tree->name(body_)).c_str());
-    ImGui::SameLine(ImGui::GetWindowWidth() - side - ImGui::GetStyle().WindowPadding.x);
+    const float gap = ImGui::GetStyle().ItemInnerSpacing.x;
+    ImGui::SameLine(ImGui::GetWindowWidth() - 3 * side - 2 * gap - ImGui::GetStyle().WindowPadding.x);
     ImGui::SetCursorPosY(ImGui::GetCursorPosY() - ImGui::GetStyle().ItemSpacing.y * 0.5F);
+    if (icon_button(desk.names, "behaviors.earlier", Icon::up, "the chosen one acts earlier (Ctrl+Up)", false, side))
+      moves_--;
+    ImGui::SameLine(0, gap);
+    if (icon_button(desk.names, "behaviors.later", Icon::down, "the chosen one acts later (Ctrl+Down)", false, side))
+      moves_++;
+    ImGui::SameLine(0, gap);
     if (icon_button(desk.names, "behaviors.add", Icon::plus, "add a behaviour", false, side)) ImGui::OpenPopup("add");
     add_popup(desk);
     if (!ImGui::BeginChild("##list", {}, false, ImGuiWindowFlags_NavFlattened)) return ImGui::EndChild();
@@ -59,6 +73,18 @@ class BehaviorsPanel : public Panel {
     if (image_ == desk.image) return;
     image_ = desk.image;
     for (BehaviorEntry& entry : entries_) renew_entry(*image_, entry);
+    order_entries(entries_);
+  }
+
+  // the chosen one past the line before it or behind it
+  void move(Desk& desk, int by) {
+    const auto chosen =
+        std::ranges::find_if(entries_, [&](const BehaviorEntry& e) { return e.pattern == desk.selected; });
+    if (chosen == entries_.end()) return desk.say("choose a behaviour first");
+    const auto to = (chosen - entries_.begin()) + by;
+    if (to < 0 || to >= static_cast<std::ptrdiff_t>(entries_.size())) return;
+    for (Message& message : put_past(*image_, *chosen, entries_[static_cast<std::size_t>(to)]))
+      moved_ = desk.send(std::move(message));
   }
 
   static std::uint32_t chosen_body(const Desk& desk) {
@@ -189,6 +215,8 @@ class BehaviorsPanel : public Panel {
   }
 
   Evaluator evaluator_;
+  int moves_ = 0;            // that wait: earlier, or later
+  std::uint64_t moved_ = 0;  // the image that has the last one
   std::shared_ptr<const Tree> tree_;
   std::shared_ptr<const Image> image_;
   std::uint32_t body_ = 0;

@@ -13,9 +13,7 @@ namespace {
 
 class ErrorsPanel : public Panel {
  public:
-  std::string badge(const Desk&) const override {
-    return list_.faults().empty() ? "" : fmt::format("{}", list_.faults().size());
-  }
+  std::string badge(const Desk&) const override { return list_.count_text(); }
 
   void hear(Desk& desk) override {
     for (const LogLine& line : log_since(seen_)) {

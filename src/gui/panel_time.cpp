@@ -26,6 +26,7 @@ class TimePanel : public Panel {
     const TakeState take = desk.take();
     if (!take.recorded() && take_.recorded())
       desk.say(fmt::format("the take '{}' has ended: {}", take_.name, clock_text(take_.seconds)));
+    if (!take.plays && take_.plays) desk.say(fmt::format("the take '{}' is over: the show is yours", take_.name));
     take_ = take;
   }
 
@@ -41,7 +42,11 @@ class TimePanel : public Panel {
       replay(desk, compact, s);
     } else {
       past(desk, (compact ? 120 : 200) * s);
-      if (take_.recorded()) recording(desk);
+      if (take_.recorded()) {
+        recording(desk);
+      } else {
+        play_take(desk);
+      }
     }
     refusal(desk);
   }
@@ -80,6 +85,11 @@ class TimePanel : public Panel {
     ImGui::SameLine();
   }
 
+  static void play_take(Desk& desk) {
+    if (icon_button(desk.names, "take.play", Icon::play, "the newest take plays (Ctrl+Shift+R)")) desk.play_take();
+    ImGui::SameLine();
+  }
+
   // a word and a sign beside the colour
   void recording(Desk& desk) const {
     const float size = ImGui::GetFrameHeight();
@@ -96,6 +106,11 @@ class TimePanel : public Panel {
 
   // where the replay is of how long the take is
   void replay(Desk& desk, bool compact, float s) const {
+    if (take_.plays) {
+      if (icon_button(desk.names, "take.stop", Icon::stop, "the show goes on from here, by hand (Ctrl+Shift+R)"))
+        desk.play_take();
+      ImGui::SameLine();
+    }
     const float width = (compact ? 160 : 260) * s;
     const float high = ImGui::GetFrameHeight();
     const ImVec2 low = ImGui::GetCursorScreenPos();
@@ -112,9 +127,9 @@ class TimePanel : public Panel {
     ImGui::RenderTextClipped(low, end, clock.c_str(), clock.c_str() + clock.size(), nullptr, {0.5F, 0.5F});
     ImGui::SameLine();
     ImGui::AlignTextToFramePadding();
-    const std::string words = compact
-                                  ? "hands are refused"
-                                  : fmt::format("replay of {}: hands are refused", shortened(take_.name, kMostOfName));
+    const char* const hands = take_.plays ? "hands wait" : "hands are refused";
+    const std::string words =
+        compact ? hands : fmt::format("replay of {}: {}", shortened(take_.name, kMostOfName), hands);
     ImGui::TextUnformatted(words.c_str());
     desk.names.note("take.text");
     ImGui::SameLine();

@@ -42,6 +42,8 @@ Result<PanelSettings> read_settings(std::string_view text) {
   settings.window_height = static_cast<int>(number_of(json, "window_height", 0, 0, kLargestWindow));
   if (const auto hidden = json.find("hidden"); hidden != json.end() && hidden->is_boolean())
     settings.hidden = hidden->get<bool>();
+  if (const auto style = json.find("style"); style != json.end() && style->is_string())
+    settings.style = style->get<std::string>();
   if (const auto list = json.find("favourites"); list != json.end() && list->is_array()) {
     for (const Json& path : *list) {
       if (path.is_string()) settings.favourites.insert(path.get<std::string>());
@@ -53,8 +55,8 @@ Result<PanelSettings> read_settings(std::string_view text) {
 std::string settings_text(const PanelSettings& s) {
   const Json json = {{"text_size", s.text_size},         {"hidden", s.hidden},
                      {"morph_seconds", s.morph_seconds}, {"easing", s.easing},
-                     {"favourites", s.favourites},       {"window_width", s.window_width},
-                     {"window_height", s.window_height}};
+                     {"favourites", s.favourites},       {"style", s.style},
+                     {"window_width", s.window_width},   {"window_height", s.window_height}};
   return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 

@@ -18,6 +18,7 @@ struct PanelSettings {
   double morph_seconds = 1.5;
   int easing = 1;                    ///< Of Easing.
   std::set<std::string> favourites;  ///< Addresses of rows.
+  std::string style;                 ///< Of the look; empty: none was chosen.
   int window_width = 0;              ///< 0: none yet.
   int window_height = 0;
   bool operator==(const PanelSettings&) const = default;

@@ -152,7 +152,8 @@ struct BodyModel {
   std::vector<FileJoint> file_joints;
   std::vector<Problem> problems;
   std::uint64_t content = 0;  ///< Over the options and all that the files hold: models of one content are the same.
-  std::vector<std::string> files;  ///< Every file that was read for it: the URDF and its meshes.
+  std::vector<std::string> files;            ///< Every file that was read for it: the URDF and its meshes.
+  std::vector<std::uint64_t> file_contents;  ///< hash_bytes of each as it was read; 0: it gave nothing.
   std::vector<std::pair<std::string, std::string>> meshes_found;  ///< As the URDF names them, and their files.
 };
 

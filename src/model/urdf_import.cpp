@@ -4,7 +4,6 @@
 #include <exception>
 #include <filesystem>
 #include <map>
-#include <set>
 #include <utility>
 
 #include <fmt/format.h>
@@ -38,7 +37,8 @@ class MeshStep {
       std::erase_if(link.visuals, [&](UrdfShape& s) { return !fill(s, link.name, "visual"); });
     }
   }
-  const std::set<std::string>& files() const { return files_; }
+  /// Files of meshes, each with hash_bytes of what it holds.
+  const std::map<std::string, std::uint64_t>& files() const { return files_; }
   /// Names and files.
   const std::map<std::string, std::string>& named() const { return named_; }
   /// Over which meshes there are, and what they hold.
@@ -81,9 +81,10 @@ class MeshStep {
     }
     const Result<std::string> file = meshes_.find(uri, folder_, options_.package_paths);
     if (!file) return Error{file.error()};
-    files_.insert(*file);
     named_[uri] = *file;
-    return meshes_.load(*file, scale);
+    Found mesh = meshes_.load(*file, scale);
+    files_.try_emplace(*file, mesh ? (*mesh)->content : 0);
+    return mesh;
   }
 
   std::string folder_;
@@ -91,7 +92,7 @@ class MeshStep {
   MeshLibrary& meshes_;
   Problems& problems_;
   std::map<std::string, Found> found_;
-  std::set<std::string> files_;
+  std::map<std::string, std::uint64_t> files_;
   std::map<std::string, std::string> named_;
 };
 
@@ -118,7 +119,11 @@ Result<std::shared_ptr<const BodyModel>> import_bytes(std::string_view bytes, co
   if (const Result<void> posed = build_poses(build); !posed) return Error{fmt::format("{}: {}", shown, posed.error())};
   model->problems = problems.take();
   model->files.assign(1, path);
-  model->files.insert(model->files.end(), step.files().begin(), step.files().end());
+  model->file_contents.assign(1, hash_bytes(bytes));
+  for (const auto& [name, content] : step.files()) {
+    model->files.push_back(name);
+    model->file_contents.push_back(content);
+  }
   model->meshes_found.assign(step.named().begin(), step.named().end());
   model->content = step.content(hash_bytes(bytes, hash_bytes(options_key(options))));
   return std::shared_ptr<const BodyModel>(std::move(model));

@@ -29,6 +29,11 @@ Quat turn_of(const double* v) {
 // Rx·Ry·Rz transposed is Rz·Ry·Rx of the angles turned round
 Vec3 degrees_of(const Quat& q) { return euler_of(glm::conjugate(q)) * (-180 / kPi); }
 
+// an arc may leave the range that both its ends keep
+void bound(const Row& row, double* out) {
+  for (std::uint32_t i = 0; i < row.width; i++) out[i] = std::clamp(out[i], row.low(i), row.high(i));
+}
+
 }  // namespace
 
 void mix(const Row& row, const double* a, const double* b, double amount, double* out) {
@@ -39,10 +44,13 @@ void mix(const Row& row, const double* a, const double* b, double amount, double
     std::copy_n(amount < 0.5 ? a : b, row.width, out);
   } else if (row.type == RowType::quat) {
     put(out, arc(quat_at(a), quat_at(b), amount));
+    bound(row, out);
   } else if (row.turns) {
     put(out, degrees_of(arc(turn_of(a), turn_of(b), amount)));
+    bound(row, out);
   } else {
     for (std::uint32_t i = 0; i < row.width; i++) out[i] = between(a[i], b[i], amount);
+    if (row.type == RowType::integer) out[0] = std::round(out[0]);
   }
 }
 

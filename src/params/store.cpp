@@ -31,7 +31,7 @@ void make_room(std::vector<T>& v, std::size_t more) {
 
 Store::Store() {
   slots_.push_back({1, table_number(group_table()), 0, 0});
-  nodes_.push_back({&group_table(), "", nullptr, {}, {}, 0, 0});
+  nodes_.push_back({&group_table(), "", nullptr, {}, {}, 0, 0, 0, 0});
   root_ = {0, 1};
   refresh_view();
 }
@@ -65,7 +65,7 @@ void Store::order_children(NodeId parent, std::span<const NodeId> first) {
                [&](NodeId child) { return !named[child.slot]; });
   LIMBER_CHECK(ordered.size() == children.size());
   children = std::move(ordered);
-  structure_version_++;
+  note_change(parent);
 }
 
 std::uint32_t Store::take_block(std::vector<double>& block, std::vector<std::vector<std::uint32_t>>& spare,
@@ -100,7 +100,7 @@ NodeId Store::add(const Table& table, NodeId parent, std::string name, void* thi
   s.kept = take_block(kept_, spare_kept_, table.kept_width());
   s.live = take_block(live_, spare_live_, table.live_width());
   const NodeId id{slot, s.generation};
-  nodes_[slot] = {&table, std::move(name), thing, parent, {}, 0, 0, structure_version_ + 1};
+  nodes_[slot] = {&table, std::move(name), thing, parent, {}, 0, 0, structure_version_ + 1, 0};
   nodes_[parent.slot].children.push_back(id);
   child_of_.insert(slot);
   for (const Row& row : table.rows()) {
@@ -108,7 +108,7 @@ NodeId Store::add(const Table& table, NodeId parent, std::string name, void* thi
   }
   mark_all(id);
   kept_version_++;
-  structure_version_++;
+  note_change(id);
   refresh_view();
   return id;
 }
@@ -120,7 +120,7 @@ NodeId Store::add_group(NodeId parent, std::string name) {
 bool Store::is_group(NodeId id) const { return alive(id) && nodes_[id.slot].table == &group_table(); }
 
 const Store::Node& Store::nobody() {
-  static const Node none{&group_table(), "", nullptr, {}, {}, 0, 0};
+  static const Node none{&group_table(), "", nullptr, {}, {}, 0, 0, 0, 0};
   return none;
 }
 
@@ -165,7 +165,7 @@ NodeId Store::retable(NodeId id, const Table& table, void* thing) {
   }
   mark_all(renewed);
   kept_version_++;
-  structure_version_++;
+  note_change(renewed);
   refresh_view();
   return renewed;
 }
@@ -200,6 +200,12 @@ void Store::give_back(std::uint32_t at) {
   nodes_[at] = {};
 }
 
+// Something came, went or changed there, which all above it know of.
+void Store::note_change(NodeId at) {
+  structure_version_++;
+  for (; !at.null(); at = nodes_[at.slot].parent) nodes_[at.slot].changed = structure_version_;
+}
+
 // its place among its siblings, which it leaves; what goes is mostly what came last
 std::size_t Store::leave_siblings(NodeId id) {
   std::vector<NodeId>& siblings = nodes_[nodes_[id.slot].parent.slot].children;
@@ -211,10 +217,10 @@ std::size_t Store::leave_siblings(NodeId id) {
 
 void Store::remove(NodeId id) {
   if (!alive(id) || id == root_) return;
+  note_change(id);
   leave_siblings(id);
   release(id);
   kept_version_++;
-  structure_version_++;
 }
 
 NodeId Store::child(NodeId parent, std::string_view name) const {
@@ -234,7 +240,7 @@ Result<SetOutcome> Store::set(NodeId id, std::string_view row, std::span<const d
   return set(id, table(id).at(row), values);
 }
 
-Result<SetOutcome> Store::set(NodeId id, const Row& row, std::span<const double> values) {
+Result<SetOutcome> Store::take(NodeId id, const Row& row, std::span<const double> values, double* taken) const {
   const auto where = [&] { return fmt::format("{}/{}", path(id), row.name); };
   if (!alive(id)) return Error{"this thing no longer exists"};
   if (!row.writable() || (row.view() && row.write == nullptr)) {
@@ -244,7 +250,6 @@ Result<SetOutcome> Store::set(NodeId id, const Row& row, std::span<const double>
     return Error{
         fmt::format("{} takes {} number{}, not {}", where(), row.width, row.width == 1 ? "" : "s", values.size())};
   }
-  std::array<double, 4> taken{};
   SetOutcome outcome;
   for (std::size_t i = 0; i < row.width; i++) {
     double v = values[i];
@@ -267,24 +272,28 @@ Result<SetOutcome> Store::set(NodeId id, const Row& row, std::span<const double>
     if (square < 1e-18) return Error{fmt::format("{} takes a rotation; 0 0 0 0 is none", where())};
     // what is of length 1 but for rounding stays to the bit: a value that was read can be set again
     if (std::abs(square - 1) > 1e-14) {
-      for (double& v : taken) v /= std::sqrt(square);
+      for (std::size_t i = 0; i < 4; i++) taken[i] /= std::sqrt(square);
     }
   }
-  void* const the_thing = nodes_[id.slot].thing;
   if (row.refuse != nullptr) {
-    if (const Result<void> may = row.refuse(the_thing, taken.data()); !may) {
+    if (const Result<void> may = row.refuse(nodes_[id.slot].thing, taken); !may) {
       return Error{fmt::format("{}: {}", where(), may.error())};
     }
   }
+  return outcome;
+}
+
+Result<SetOutcome> Store::set(NodeId id, const Row& row, std::span<const double> values) {
+  std::array<double, 4> taken{};
+  Result<SetOutcome> outcome = take(id, row, values, taken.data());
+  if (!outcome) return outcome;
+  void* const the_thing = nodes_[id.slot].thing;
   if (saying_) say(id, row);
   if (row.view()) {
     row.write(the_thing, taken.data());
     return outcome;
   }
-  announce(id, row, false);
-  keep(id, row);
-  std::copy_n(taken.data(), row.width, slot_values(id, row));
-  if (!row.live) kept_version_++;
+  write(id, row, taken.data());
   mark(id, row);
   if (row.written != nullptr) row.written(the_thing, row);
   return outcome;
@@ -312,21 +321,24 @@ void Store::apply_marks() {
   for (int round = 0; round < 4 && !marked_.empty(); round++) {
     applying_.clear();
     applying_.swap(marked_);
-    for (const NodeId id : applying_) run_effects(id);
+    for (const NodeId id : applying_) run_marks(id);
   }
 }
 
 // the node stays in the list, where it finds nothing left to do: looking for it would cost more
-void Store::apply_marks(NodeId id) { run_effects(id); }
+void Store::apply_marks(NodeId id) { run_marks(id); }
 
-void Store::run_effects(NodeId id) {
-  if (!alive(id)) return;
+void Store::run_marks(NodeId id) {
+  if (alive(id)) run_effects(id, std::exchange(nodes_[id.slot].marks, 0));
+}
+
+void Store::run_effects(NodeId id, std::uint64_t rows) {
   const Table& table = *nodes_[id.slot].table;
   std::array<void (*)(void*), 64> done;
   auto end = done.begin();
-  for (std::uint64_t marks = std::exchange(nodes_[id.slot].marks, 0); marks != 0; marks &= marks - 1) {
-    const Row& row = table.row(static_cast<std::uint32_t>(std::countr_zero(marks)));
-    if (std::find(done.begin(), end, row.effect) != end) continue;
+  for (; rows != 0; rows &= rows - 1) {
+    const Row& row = table.row(static_cast<std::uint32_t>(std::countr_zero(rows)));
+    if (row.effect == nullptr || std::find(done.begin(), end, row.effect) != end) continue;
     *end++ = row.effect;
     row.effect(nodes_[id.slot].thing);
   }

@@ -2,6 +2,7 @@
 // (states and readouts). One door writes: it refuses what is no number, clamps, writes and marks. [sim]
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <span>
 #include <string>
@@ -78,6 +79,14 @@ class Store {
   /// A view's value goes to the rows behind it. Nothing of a refused value is applied.
   Result<SetOutcome> set(NodeId id, const Row& row, std::span<const double> values);
   Result<SetOutcome> set(NodeId id, std::string_view row, std::span<const double> values);
+  /// What set() would make of the values: `taken` has room for 4. The same is refused.
+  Result<SetOutcome> take(NodeId id, const Row& row, std::span<const double> values, double* taken) const;
+  /// For what moves a stored row of a living thing between two values that take() gave: writes and tells like set(),
+  /// but checks nothing more and marks nothing. The effect is the caller's to run.
+  void go_on(NodeId id, const Row& row, const double* values) {
+    write(id, row, values);
+    if (row.written != nullptr) row.written(nodes_[id.slot].thing, row);
+  }
 
   /// Reads a row (views are computed): `out` takes row.width numbers.
   void get(NodeId id, const Row& row, double* out) const;
@@ -123,6 +132,13 @@ class Store {
   void apply_marks();
   /// The same for one node, ahead of the others.
   void apply_marks(NodeId id);
+  /// Has the processor fetch what go_on() and run_effects() look at first.
+  void fetch(NodeId id) const {
+    __builtin_prefetch(&nodes_[id.slot].thing);
+    __builtin_prefetch(kept_.data() + slots_[id.slot].kept);
+  }
+  /// Runs the effects of these rows of a node, a bit a row, each function once.
+  void run_effects(NodeId id, std::uint64_t rows);
   /// Whether the row waits for its effect.
   bool marked(NodeId id, const Row& row) const { return (node(id).marks >> row.index & 1u) != 0; }
 
@@ -145,17 +161,19 @@ class Store {
   /// Removes a hidden node for good.
   void drop_hidden(NodeId id);
 
-  /// Told of each row that is about to be written through the door, of a view the rows behind it, while somebody
-  /// listens; or, `later`, that is going to be written as time goes on.
+  /// Told of each row that is written through the door, of a view the rows behind it, and of what it was before; or,
+  /// `later`, that is going to be written as time goes on. Of a guarded call once it has ended well.
   struct Listener {
-    void (*heard)(void* who, NodeId id, const Row& row, bool later) = nullptr;
+    void (*heard)(void* who, NodeId id, const Row& row, bool later, const double* before) = nullptr;
     void* who = nullptr;
   };
   /// From here on this one hears; the answer: who did before.
   Listener listen(Listener listener) { return std::exchange(listener_, listener); }
   /// Who listens hears of the row.
   void announce(NodeId id, const Row& row, bool later) {
-    if (listener_.heard != nullptr) listener_.heard(listener_.who, id, row, later);
+    if (listener_.heard == nullptr) return;
+    if (undo_.active && !later) return hear_later(id, row);
+    listener_.heard(listener_.who, id, row, later, values(id, row));
   }
 
   std::span<const double> kept() const { return kept_; }
@@ -167,6 +185,8 @@ class Store {
   void note_structure() { structure_version_++; }
   /// The structure's version when the node came, or got another table.
   std::uint64_t born(NodeId id) const { return node(id).born; }
+  /// The structure's version when something came, went or got another place or table at the node or below it.
+  std::uint64_t changed(NodeId id) const { return node(id).changed; }
   const StoreView* view() const { return &view_; }
   /// Keeps `copy` like view() until hide_view(): for readers that may turn to another store.
   void show_view(StoreView& copy);
@@ -194,6 +214,7 @@ class Store {
     std::uint64_t marks = 0;
     std::uint64_t said = 0;
     std::uint64_t born = 0;
+    std::uint64_t changed = 0;
   };
   // children are found by parent and name; the set holds slots, the names stand in the nodes alone
   struct ChildKey {
@@ -229,13 +250,22 @@ class Store {
   }
   std::uint32_t take_block(std::vector<double>& block, std::vector<std::vector<std::uint32_t>>& spare,
                            std::uint32_t width);
+  void note_change(NodeId at);
   std::size_t leave_siblings(NodeId id);
   void release(NodeId id);
   void give_back_blocks(std::uint32_t slot);
   void give_back(std::uint32_t slot);
+  void write(NodeId id, const Row& row, const double* values) {
+    announce(id, row, false);
+    keep(id, row);
+    std::copy_n(values, row.width, slot_values(id, row));
+    if (!row.live) kept_version_++;
+  }
   void keep_value(NodeId id, const Row& row);
+  void hear_later(NodeId id, const Row& row);
+  StoreUndo::Kept& kept_of(NodeId id);
   void turn_hidden(NodeId id, bool hide);
-  void run_effects(NodeId id);
+  void run_marks(NodeId id);
   void refresh_view();
 
   std::vector<NodeSlot> slots_;

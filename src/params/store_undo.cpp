@@ -13,16 +13,38 @@ void Store::begin_undo() {
   undo_.active = true;
   undo_.call++;
   undo_.values.clear();
+  undo_.set.clear();
   undo_.marked_before = marked_.size();
 }
 
-void Store::end_undo() { undo_.active = false; }
+void Store::end_undo() {
+  undo_.active = false;
+  if (listener_.heard == nullptr) return;
+  for (const StoreUndo::Set& set : undo_.set) {
+    if (alive(set.id)) listener_.heard(listener_.who, set.id, *set.row, false, set.before.data());
+  }
+}
+
+// what a call sets that fails was never set: nobody hears of it before its end
+void Store::hear_later(NodeId id, const Row& row) {
+  StoreUndo::Kept& kept = kept_of(id);
+  const std::uint64_t bit = std::uint64_t{1} << row.index;
+  if ((kept.set & bit) != 0) return;
+  kept.set |= bit;
+  StoreUndo::Set& set = undo_.set.emplace_back(StoreUndo::Set{id, &row, {}});
+  std::copy_n(values(id, row), row.width, set.before.begin());
+}
+
+StoreUndo::Kept& Store::kept_of(NodeId id) {
+  if (undo_.kept.size() <= id.slot) undo_.kept.resize(slots_.size());
+  StoreUndo::Kept& kept = undo_.kept[id.slot];
+  if (kept.call != undo_.call) kept = {undo_.call, 0, 0};
+  return kept;
+}
 
 void Store::keep_value(NodeId id, const Row& row) {
   if (!alive(id) || !row.stored()) return;
-  if (undo_.kept.size() <= id.slot) undo_.kept.resize(slots_.size());
-  StoreUndo::Kept& kept = undo_.kept[id.slot];
-  if (kept.call != undo_.call) kept = {undo_.call, 0};
+  StoreUndo::Kept& kept = kept_of(id);
   const std::uint64_t bit = std::uint64_t{1} << row.index;
   if ((kept.rows & bit) != 0) return;
   kept.rows |= bit;
@@ -63,6 +85,7 @@ void Store::turn_hidden(NodeId id, bool hide) {
   } else {
     slot.generation--;
     child_of_.insert(id.slot);
+    nodes_[id.slot].changed = structure_version_;  // it was not there meanwhile
   }
   for (const NodeId child : nodes_[id.slot].children) turn_hidden(child, hide);
 }
@@ -72,16 +95,16 @@ std::size_t Store::hide(NodeId id) {
   const std::size_t place = leave_siblings(id);
   turn_hidden(id, true);
   kept_version_++;
-  structure_version_++;
+  note_change(id);
   return place;
 }
 
 void Store::show(NodeId id, std::size_t place) {
+  note_change(id);
   turn_hidden(id, false);
   std::vector<NodeId>& siblings = nodes_[nodes_[id.slot].parent.slot].children;
   siblings.insert(siblings.begin() + static_cast<std::ptrdiff_t>(std::min(place, siblings.size())), id);
   kept_version_++;
-  structure_version_++;
 }
 
 void Store::drop_hidden(NodeId id) {

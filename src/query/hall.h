@@ -41,6 +41,8 @@ class Hall {
   void bell();
   /// To be called every kBeat while busy().
   void beat();
+  /// Lets go of all who wait, unanswered: what their answers hold (a connection, say) goes now.
+  void dismiss() { waiting_.clear(); }
   /// Whether anybody waits or may be told something.
   bool busy() const { return !waiting_.empty() || !clients_.empty(); }
 

@@ -48,6 +48,7 @@ struct QueryServer::Running {
     io.stop();
     if (thread.joinable()) thread.join();
     descriptor.release();  // the bell's, who closes it
+    hall.dismiss();        // connections that wait: their sockets need `io`
   }
 
   error_code open(const ListenAddress& at) {

@@ -64,6 +64,13 @@ Guard::~Guard() {
   memory_.detach(state_);
 }
 
+void Guard::limit(const ScriptLimits& limits) {
+  limits_ = limits;
+  memory_.limit(limits.memory);
+  watchdog_->remove(watch_);
+  watchdog_->add(watch_, poll_of(limits));
+}
+
 void Guard::use(int handler, int stopped_fault, int failed) {
   handler_ = handler;
   stopped_fault_ = stopped_fault;

@@ -52,6 +52,9 @@ class Guard {
   /// A fault that tells no place is that of the function on top of the stack.
   void blame_function();
 
+  /// From the next call on, these limits hold.
+  void limit(const ScriptLimits& limits);
+
   /// Registry references of functions of the prelude: the message handler; the fault of a call that was stopped
   /// without an error coming out; what is to be done after a failure.
   void use(int handler, int stopped_fault, int failed);

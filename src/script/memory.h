@@ -32,6 +32,8 @@ class Memory {
   /// For a key state.
   void pass(KeyBytes& key);
 
+  /// From the next call on.
+  void limit(std::size_t cap) { cap_ = cap; }
   std::size_t used() const { return used_; }
   std::size_t cap() const { return cap_; }
 

@@ -47,6 +47,8 @@ std::shared_ptr<const Sources> Scene::sources() const { return context_->sources
 
 void Scene::count_calls(CallLedger& calls) { context_->calls = &calls; }
 
+void Scene::limit(const ScriptLimits& limits) { vm_->guard().limit(limits); }
+
 void Scene::start() { vm_->start(); }
 
 void Scene::tick(double dt) {

@@ -49,6 +49,8 @@ class Scene {
   std::shared_ptr<const Sources> sources() const;
   /// From here on guarded calls are counted there; it outlives the scene. [sim]
   void count_calls(CallLedger& calls);
+  /// What scripts may take from here on. [sim]
+  void limit(const ScriptLimits& limits);
   /// The callbacks of on_start; the world is settled before.
   void start();
   /// Timers, contacts of the tick before, on_step with `dt` seconds, each in the order of registration.

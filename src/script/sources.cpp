@@ -84,32 +84,32 @@ Result<std::string> Sources::text(const std::string& path) {
 Result<std::shared_ptr<const BodyModel>> Sources::model(const std::string& path, const ImportOptions& options) {
   const std::string key = model_key(path, options);
   contents_.try_emplace(path, 0);  // one that can't be read is to be watched too
-  if (const auto* before = known(&Sources::models_, key)) return models_[key] = *before;
+  const auto* before = known(&Sources::models_, key);
   ModelLibrary& library = kept() ? *again_->library_ : models();
-  Result<std::shared_ptr<const BodyModel>> model = library.load_urdf(path, options);
-  if (model) models_[key] = *model;
-  return model;
+  Result<std::shared_ptr<const BodyModel>> model = before ? *before : library.load_urdf(path, options);
+  if (!model) return model;
+  for (std::size_t i = 0; i < (*model)->files.size(); i++) contents_[(*model)->files[i]] = (*model)->file_contents[i];
+  return models_[key] = *model;
 }
 
 Result<std::shared_ptr<const MeshModel>> Sources::mesh(const std::string& path, const Vec3& scale) {
   const std::string key = fmt::format("{}|{:a}|{:a}|{:a}", path, scale.x, scale.y, scale.z);
   contents_.try_emplace(path, 0);
-  if (const auto* before = known(&Sources::meshes_, key)) return meshes_[key] = *before;
+  const auto* before = known(&Sources::meshes_, key);
   ModelLibrary& library = kept() ? *again_->library_ : models();
-  Result<std::shared_ptr<const MeshModel>> mesh = library.meshes().load(path, scale);
-  if (mesh) meshes_[key] = *mesh;
-  return mesh;
+  Result<std::shared_ptr<const MeshModel>> mesh = before ? *before : library.meshes().load(path, scale);
+  if (!mesh) return mesh;
+  contents_[path] = (*mesh)->content;
+  return meshes_[key] = *mesh;
 }
 
 SourcesRead Sources::read() const {
   SourcesRead read{found_, texts_, {}, {}};
-  std::map<std::string, std::uint64_t> files = contents_;
   for (const auto& [key, model] : models_) {
-    for (const std::string& file : model->files) files.try_emplace(file, 0);
     const std::string folder = std::filesystem::path(model->file).parent_path().string();
     for (const auto& [name, file] : model->meshes_found) read.meshes[FileSet::mesh_key(folder, name)] = file;
   }
-  for (const auto& [path, content] : files) {
+  for (const auto& [path, content] : contents_) {
     if (!texts_.contains(path)) read.files.push_back(path);
   }
   return read;
@@ -118,9 +118,6 @@ SourcesRead Sources::read() const {
 std::vector<SourceFile> Sources::files() const {
   std::map<std::string, std::uint64_t> all = contents_;
   for (const auto& [path, text] : texts_) all.try_emplace(path, 0);
-  for (const auto& [key, model] : models_) {
-    for (const std::string& file : model->files) all.try_emplace(file, 0);
-  }
   for (const std::string& path : passed_) all.try_emplace(path, 0);
   std::vector<SourceFile> files;
   for (const auto& [path, content] : all) {

@@ -70,7 +70,7 @@ class Sources {
   std::shared_ptr<ModelLibrary> library_;  // of those files
   std::map<std::string, std::string> found_;
   std::map<std::string, std::string> texts_;
-  std::map<std::string, std::uint64_t> contents_;  // by path; 0: not known
+  std::map<std::string, std::uint64_t> contents_;  // of all that was read, by path; 0: not known
   std::map<std::string, std::shared_ptr<const BodyModel>> models_;
   std::map<std::string, std::shared_ptr<const MeshModel>> meshes_;
   std::vector<std::string> passed_;

@@ -69,7 +69,9 @@ std::vector<Row> Behavior::common_rows() {
   return {std::move(on),
           view<&Behavior::read_time>(
               readout(rows::number("time", "µs", 0, 0, kUnbounded, "What the last tick spent on it."))),
-          act<&Behavior::act_remove>(action("remove", 0, 0, "Takes the behaviour away."))};
+          act<&Behavior::act_remove>(action("remove", 0, 0, "Takes the behaviour away.")),
+          refuse<&Behavior::refuse_place>(state(view<&Behavior::read_place, &Behavior::write_place>(
+              integer("place", 1, 1, 1e6, "Which one it is, from 1, of those that act on its body in a tick."))))};
 }
 
 Behavior::Behavior() = default;
@@ -96,6 +98,15 @@ bool Behavior::active() const { return store().values(id_, type_->table->row(0))
 bool Behavior::runs() const { return !removed() && active() && fault_.text.empty() && body_->enabled(); }
 double Behavior::microseconds() const { return 1e6 * (group_ == nullptr ? seconds_ : group_->seconds_a_member()); }
 void Behavior::read_time(double* out) const { out[0] = microseconds(); }
+
+void Behavior::read_place(double* out) const { out[0] = static_cast<double>(world().behaviors().place(*this)); }
+
+void Behavior::write_place(const double* in) { world().behaviors().put_at(*this, static_cast<std::size_t>(in[0])); }
+
+Result<void> Behavior::refuse_place(const double*) const {
+  if (group_ != nullptr) return Error{fmt::format("it acts where its group does: set /physics/group/{}/place", name())};
+  return world().behaviors().may_move();
+}
 
 void Behavior::active_written(void* thing, const Row&) {
   auto& behavior = *static_cast<Behavior*>(thing);

@@ -25,8 +25,8 @@ class Motor;
 class Part;
 class World;
 
-/// Rows that every instance and group has before its parameters: `active`, `time`, `remove`.
-inline constexpr std::uint32_t kCommonBehaviorRows = 3;
+/// Rows that every instance and group has before its parameters: `active`, `time`, `remove`, `place`.
+inline constexpr std::uint32_t kCommonBehaviorRows = 4;
 
 /// What a behaviour acts on, as the scene says it. Copies of a body and members of a group share one.
 struct BehaviorSetup {
@@ -138,6 +138,9 @@ class Behavior {
   bool needs_attention() const { return fresh_ || seeded_with_ == kNoSeed || !fault_.text.empty(); }
   void call_attention();
   void read_time(double* out) const;
+  void read_place(double* out) const;
+  void write_place(const double* in);
+  Result<void> refuse_place(const double* in) const;
   Result<void> act_remove(std::span<const double> args);
   static void active_written(void* thing, const Row& row);
 
@@ -156,6 +159,7 @@ class Behavior {
   BehaviorFault fault_;
   double seconds_ = 0;             // of the last tick
   std::uint32_t resolved_at_ = 0;  // the body's structure then
+  std::uint32_t place_ = 0;        // as BehaviorList last counted it
   std::uint64_t kept_in_ = 0;      // the guarded call that it was kept in last
   bool fresh_ = true;              // start() is to be called before the next step
 };

@@ -39,7 +39,9 @@ std::vector<Row> BehaviorGroup::common_rows() {
   return {std::move(on),
           view<&BehaviorGroup::read_time>(
               readout(number("time", "µs", 0, 0, kUnbounded, "What the last tick spent on all of it."))),
-          act<&BehaviorGroup::act_remove>(action("remove", 0, 0, "Takes it away from all its members."))};
+          act<&BehaviorGroup::act_remove>(action("remove", 0, 0, "Takes it away from all its members.")),
+          refuse<&BehaviorGroup::refuse_place>(state(view<&BehaviorGroup::read_place, &BehaviorGroup::write_place>(
+              integer("place", 1, 1, 1e6, "Which one it is, from 1, of all names of behaviours."))))};
 }
 
 void BehaviorGroup::hand_on(void* thing, const Row& row) {
@@ -73,6 +75,12 @@ double BehaviorGroup::seconds_a_member() const {
 }
 
 void BehaviorGroup::read_time(double* out) const { out[0] = 1e6 * seconds_; }
+
+void BehaviorGroup::read_place(double* out) const { out[0] = static_cast<double>(world_.behaviors().place(*this)); }
+
+void BehaviorGroup::write_place(const double* in) { world_.behaviors().put_at(*this, static_cast<std::size_t>(in[0])); }
+
+Result<void> BehaviorGroup::refuse_place(const double*) const { return world_.behaviors().may_move(); }
 
 Result<void> BehaviorGroup::act_remove(std::span<const double>) {
   world_.behaviors().remove_group(*this);

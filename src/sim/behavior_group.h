@@ -82,6 +82,9 @@ class BehaviorGroup {
   void step(double dt);
   Result<void> names_exist() const;
   void read_time(double* out) const;
+  void read_place(double* out) const;
+  void write_place(const double* in);
+  Result<void> refuse_place(const double* in) const;
   Result<void> act_remove(std::span<const double> args);
 
   World& world_;
@@ -99,7 +102,8 @@ class BehaviorGroup {
   std::vector<std::uint32_t> running_numbers_;  // their places in members_
   std::vector<NodeId> left_;                    // bodies whose instance was taken away by hand
   std::shared_ptr<NeighborSet> neighbors_;
-  double seconds_ = 0;  // of the last tick
+  double seconds_ = 0;       // of the last tick
+  std::uint32_t place_ = 0;  // as BehaviorList last counted it
 };
 
 }  // namespace limber

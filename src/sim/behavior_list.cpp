@@ -272,6 +272,7 @@ void BehaviorList::bring_into(const std::vector<std::string>& order) {
   std::stable_sort(placed.begin(), placed.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
   entries_.clear();
   for (auto& [place, entry] : placed) entries_.push_back(std::move(entry));
+  world_.store().note_structure();
 }
 
 void BehaviorList::step(double dt) {

@@ -1,5 +1,5 @@
-// BehaviorList: a world's behaviours, in the order in which they were made: that is the order in which they act, C++
-// and Lua alike. A group stands where it was made. [sim]
+// BehaviorList: a world's behaviours, in the order in which they act, C++ and Lua alike: that in which they were made,
+// until one is put elsewhere. A group stands where it was made. [sim]
 #pragma once
 
 #include <functional>
@@ -54,6 +54,17 @@ class BehaviorList {
 
   /// Members of groups, and targets, as bodies now are. Cheap while none has come, gone or changed.
   void follow_bodies();
+  /// Which one it is, from 1, of those that act on its body: its own, and groups that it is a member of. [sim]
+  std::size_t place(const Behavior& behavior) const;
+  /// Which one it is, from 1, of all names that behaviours of bodies and groups have, by their first.
+  std::size_t place(const BehaviorGroup& group) const;
+  /// It acts there from the next step on; beyond the last: as the last. The others keep their order. A guarded call
+  /// that fails has not done it. Not while they step, and not for a member.
+  void put_at(Behavior& behavior, std::size_t place);
+  /// The same for a group among names: then all behaviours act in the order of their names, in every body.
+  void put_at(BehaviorGroup& group, std::size_t place);
+  /// An error: they step now.
+  Result<void> may_move() const;
   /// Names in the order in which they act: "body/behaviour", and "/group".
   std::vector<std::string> order() const;
   /// Brings them into such an order; those that are not named act behind, as they did.
@@ -84,6 +95,11 @@ class BehaviorList {
   };
 
   static std::string key_of(const Entry& entry);
+  static std::string_view name_of(const Entry& entry);
+  static bool acts_on(const Entry& entry, const Body& body);
+  std::vector<std::string_view> names() const;
+  void count_places() const;
+  void note_order();
   Result<std::unique_ptr<Behavior>> make(Body& body, const std::shared_ptr<const BehaviorType>& type,
                                          const std::string& name, const std::shared_ptr<const BehaviorSetup>& setup,
                                          BehaviorGroup* group);
@@ -107,6 +123,8 @@ class BehaviorList {
   std::vector<std::unique_ptr<BehaviorGroup>> group_graves_;
   std::vector<std::weak_ptr<NeighborSet>> neighbor_sets_;
   std::uint64_t structure_ = 0;
+  mutable std::uint64_t places_of_ = ~std::uint64_t{0};  // the structure whose places were counted
+  std::vector<std::vector<std::string>> orders_before_;  // of a guarded call
   std::uint64_t turn_ = 0;
   bool stepping_ = false;
   BehaviorUndo undo_{*this};

@@ -27,6 +27,7 @@ void BehaviorUndo::begin() {
   call_++;
   kept_count_ = 0;
   targets_.clear();
+  list_.orders_before_.clear();
 }
 
 void BehaviorUndo::end() {

@@ -3,9 +3,76 @@
 
 #include <algorithm>
 #include <cstring>
+#include <utility>
+
+#include "sim/gyroscope.h"
 
 namespace limber {
+
+void IslandSolver::convertBodies(btCollisionObject** bodies, int count, const btContactSolverInfo& info) {
+  btSequentialImpulseConstraintSolver::convertBodies(bodies, count, info);
+  for (int i = 0; i < count; ++i) {
+    const btRigidBody* body = btRigidBody::upcast(bodies[i]);
+    if (body == nullptr || body->isStaticOrKinematicObject()) continue;
+    const btVector3& inverse = body->getInvInertiaDiagLocal();
+    if (inverse[inverse.minAxis()] <= 0) continue;  // does not turn about every axis
+    const btMatrix3x3& axes = body->getWorldTransform().getBasis();
+    const Vec3 change = gyroscopic_change(1.0 / from_bt(inverse), from_bt(body->getAngularVelocity() * axes),
+                                          static_cast<double>(info.m_timeStep));
+    btSolverBody& solver = m_tmpSolverBodyPool[body->getCompanionId()];
+    solver.m_externalTorqueImpulse += axes * to_bt(change) * body->getAngularFactor();
+  }
+}
+
 void IslandSolver::convertJoints(btTypedConstraint** constraints, int count, const btContactSolverInfo& info) {
+  direct_here_ = direct_wanted_ && plan_direct(constraints, count, info);
+  if (direct_here_) {
+    m_tmpSolverNonContactConstraintPool.resizeNoInitialize(0);
+    joints_.resizeNoInitialize(0);
+    return;
+  }
+  for (int i = 0; i < count; ++i) {
+    if (constraints[i]->getConstraintType() != JointConstraint::kType) continue;
+    static_cast<JointConstraint*>(constraints[i])->set_step(info.m_timeStep);
+    if (constraints[i]->isEnabled()) static_cast<JointConstraint*>(constraints[i])->plan();
+  }
+  convert_all(constraints, count, info);
+}
+
+// False: no joints, or some of Bullet's own, which only the sweeps know.
+bool IslandSolver::plan_direct(btTypedConstraint** constraints, int count, const btContactSolverInfo& info) {
+  for (int i = 0; i < count; ++i) {
+    if (constraints[i]->getConstraintType() != JointConstraint::kType) return false;
+  }
+  direct_.start();
+  for (int i = 0; i < count; ++i) {
+    JointConstraint& joint = static_cast<JointConstraint&>(*constraints[i]);
+    if (!joint.isEnabled()) continue;
+    joint.set_step(info.m_timeStep);
+    joint.plan();
+    direct_.add_joint(joint, getOrInitSolverBody(joint.getRigidBodyA(), info.m_timeStep),
+                      getOrInitSolverBody(joint.getRigidBodyB(), info.m_timeStep));
+  }
+  return direct_.joint_count() > 0;
+}
+
+btScalar IslandSolver::solveGroupCacheFriendlyIterations(btCollisionObject** bodies, int body_count,
+                                                         btPersistentManifold** manifolds, int manifold_count,
+                                                         btTypedConstraint** constraints, int constraint_count,
+                                                         const btContactSolverInfo& info, btIDebugDraw* drawer) {
+  // an island of one resting body comes here without having been set up
+  if (std::exchange(direct_here_, false)) {
+    const IslandPools pools{m_tmpSolverBodyPool, m_tmpSolverContactConstraintPool,
+                            m_tmpSolverContactFrictionConstraintPool, m_tmpSolverContactRollingFrictionConstraintPool};
+    if (direct_.solve(pools, info)) return 0;
+    convert_all(constraints, constraint_count, info);
+  }
+  return btSequentialImpulseConstraintSolver::solveGroupCacheFriendlyIterations(
+      bodies, body_count, manifolds, manifold_count, constraints, constraint_count, info, drawer);
+}
+
+// Rows of joints that are planned already.
+void IslandSolver::convert_all(btTypedConstraint** constraints, int count, const btContactSolverInfo& info) {
   m_tmpConstraintSizesPool.resizeNoInitialize(count);
   int rows = 0;
   for (int i = 0; i < count; ++i) {
@@ -13,9 +80,10 @@ void IslandSolver::convertJoints(btTypedConstraint** constraints, int count, con
     size = {0, 0};
     if (!constraints[i]->isEnabled()) continue;
     if (constraints[i]->getConstraintType() == JointConstraint::kType) {
-      static_cast<JointConstraint*>(constraints[i])->set_step(info.m_timeStep);
+      size.m_numConstraintRows = static_cast<int>(static_cast<JointConstraint*>(constraints[i])->planned().size());
+    } else {
+      constraints[i]->getInfo1(&size);
     }
-    constraints[i]->getInfo1(&size);
     rows += size.m_numConstraintRows;
   }
   m_tmpSolverNonContactConstraintPool.resizeNoInitialize(rows);

@@ -10,6 +10,8 @@ namespace {
 
 /// Islands are solved together until this many joints and contact pairs are in a batch; it changes no result.
 constexpr int kBatch = 16;
+/// Joints and contact pairs of a step that are worth waking others for; it changes no result.
+constexpr int kTeamWork = 64;
 /// Contact pairs in Bullet's pool.
 constexpr int kPool = 64;
 
@@ -26,6 +28,11 @@ void accumulate(btAlignedObjectArray<int>& start, btAlignedObjectArray<int>& cur
 void zero(btAlignedObjectArray<int>& a, int size) {
   a.resizeNoInitialize(size);
   for (int i = 0; i < size; ++i) a[i] = 0;
+}
+
+void leave_gyroscopic_torque_to_us(btRigidBody& body) {
+  body.setFlags(body.getFlags() & ~(BT_ENABLE_GYROSCOPIC_FORCE_EXPLICIT | BT_ENABLE_GYROSCOPIC_FORCE_IMPLICIT_WORLD |
+                                    BT_ENABLE_GYROSCOPIC_FORCE_IMPLICIT_BODY));
 }
 
 // Bullet's, but for the groups of set_apart
@@ -47,7 +54,7 @@ class Broadphase : public btDbvtBroadphase {
 
 }  // namespace
 
-WorldParts::WorldParts(const WorldSetup& setup) : memory(BulletMemory::current()) {
+WorldParts::WorldParts(const WorldSetup& setup) : memory(BulletMemory::current()), team(setup.team) {
   // shared by all worlds, and one may be made while another is stepped
   if (gDbvtMargin != to_scalar(setup.broadphase_margin)) gDbvtMargin = to_scalar(setup.broadphase_margin);
   // Bullet's own pools of 4096 contact pairs take 4 MB, which each key state would look through; more pairs than a
@@ -60,12 +67,14 @@ WorldParts::WorldParts(const WorldSetup& setup) : memory(BulletMemory::current()
   // every pair is looked at in every step, so that a pair's life does not depend on how many others there are
   broadphase->m_cupdates = 100;
   const BulletMemory::Scope heap(nullptr);
-  solver = std::make_unique<IslandSolver>();
+  for (int i = 0; i < (setup.team ? setup.team->members() : 1); ++i) {
+    solvers.push_back(std::make_unique<IslandSolver>());
+  }
 }
 
 IslandWorld::IslandWorld(const WorldSetup& setup)
     : WorldParts(setup),
-      btDiscreteDynamicsWorld(dispatcher.get(), broadphase.get(), solver.get(), configuration.get()) {
+      btDiscreteDynamicsWorld(dispatcher.get(), broadphase.get(), solvers.front().get(), configuration.get()) {
   btContactSolverInfo& info = getSolverInfo();
   info.m_numIterations = setup.solver_iterations;
   info.m_solverMode = SOLVER_USE_WARMSTARTING | SOLVER_SIMD | SOLVER_USE_2_FRICTION_DIRECTIONS;
@@ -104,11 +113,13 @@ void IslandWorld::addConstraint(btTypedConstraint* constraint, bool disable_coll
 
 void IslandWorld::addRigidBody(btRigidBody* body) {
   const BulletMemory::Scope scope(memory);
+  leave_gyroscopic_torque_to_us(*body);
   btDiscreteDynamicsWorld::addRigidBody(body);
 }
 
 void IslandWorld::addRigidBody(btRigidBody* body, int group, int mask) {
   const BulletMemory::Scope scope(memory);
+  leave_gyroscopic_torque_to_us(*body);
   btDiscreteDynamicsWorld::addRigidBody(body, group, mask);
 }
 
@@ -134,6 +145,7 @@ void IslandWorld::solveConstraints(btContactSolverInfo& info) {
   sort_bodies();
   sort_joints();
   sort_contacts();
+  gather_batches(info.m_minimumSolverBatchSize);
   solve_islands(info);
 }
 
@@ -207,19 +219,55 @@ void IslandWorld::sort_contacts() {
   accumulate(contact_start_, cursor_);
 }
 
-void IslandWorld::solve_islands(const btContactSolverInfo& info) {
-  const BulletMemory::Scope heap(nullptr);  // the solver's rows
-  const auto range = [](auto& items, int first) { return first < items.size() ? &items[first] : nullptr; };
-  int first = 0;
+void IslandWorld::gather_batches(int least) {
+  batches_.resizeNoInitialize(0);
+  batches_.push_back(0);
   for (int last = 1; last <= island_count_; ++last) {
+    const int first = batches_[batches_.size() - 1];
     const int joints = joint_start_[last] - joint_start_[first];
     const int contacts = contact_start_[last] - contact_start_[first];
-    if (joints + contacts < info.m_minimumSolverBatchSize && last < island_count_) continue;
-    m_constraintSolver->solveGroup(range(bodies_, body_start_[first]), body_start_[last] - body_start_[first],
-                                   range(contacts_, contact_start_[first]), contacts,
-                                   range(joints_, joint_start_[first]), joints, info, nullptr, getDispatcher());
-    first = last;
+    // the direct solver counts and falls back island by island
+    const bool joints_follow = last < island_count_ && joint_start_[last + 1] > joint_start_[last];
+    const bool alone = solvers.front()->direct_wanted() && (joints > 0 || joints_follow);
+    if (alone || joints + contacts >= least || last == island_count_) batches_.push_back(last);
   }
+}
+
+void IslandWorld::solve_batch(int batch, IslandSolver& solver, const btContactSolverInfo& info) {
+  const auto range = [](auto& items, int first) { return first < items.size() ? &items[first] : nullptr; };
+  const int first = batches_[batch];
+  const int last = batches_[batch + 1];
+  const auto count = [&](const btAlignedObjectArray<int>& start) { return start[last] - start[first]; };
+  solver.solveGroup(range(bodies_, body_start_[first]), count(body_start_), range(contacts_, contact_start_[first]),
+                    count(contact_start_), range(joints_, joint_start_[first]), count(joint_start_), info, nullptr,
+                    getDispatcher());
+}
+
+// Islands share bodies that don't move alone, which solvers only read (none is kinematic: those would be written to).
+void IslandWorld::solve_islands(const btContactSolverInfo& info) {
+  const BulletMemory::Scope heap(nullptr);  // the solvers' rows; helpers of a team have no other memory
+  const int batches = batches_.size() - 1;
+  if (team != nullptr && joints_.size() + contacts_.size() >= kTeamWork) {
+    team->run(batches,
+              [&](int batch, int member) { solve_batch(batch, *solvers[static_cast<std::size_t>(member)], info); });
+  } else {
+    for (int batch = 0; batch < batches; ++batch) solve_batch(batch, *solvers.front(), info);
+  }
+}
+
+void IslandWorld::set_direct(bool on) {
+  for (const auto& solver : solvers) solver->set_direct(on);
+}
+
+DirectCounts IslandWorld::direct_counts() const {
+  DirectCounts sum;
+  for (const auto& solver : solvers) {
+    const DirectCounts& counts = solver->direct().counts();
+    sum.direct += counts.direct;
+    sum.plain += counts.plain;
+    sum.fallbacks += counts.fallbacks;
+  }
+  return sum;
 }
 
 }  // namespace limber

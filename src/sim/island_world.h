@@ -3,9 +3,12 @@
 #pragma once
 
 #include <memory>
+#include <vector>
 
+#include "base/team.h"
 #include "sim/bullet.h"
 #include "sim/bullet_memory.h"
+#include "sim/island_direct.h"
 #include "sim/joint_block.h"
 #include "sim/joint_constraint.h"
 
@@ -15,16 +18,28 @@ namespace limber {
 struct WorldSetup {
   double broadphase_margin = 0.01;  ///< Metres that bounding boxes are fattened by; shared by all worlds.
   int solver_iterations = 50;
+  std::shared_ptr<Team> team{};  ///< Solves islands side by side, with the same result; null: this thread alone.
 };
 
 /// Sequential impulses with joint rows of our own making: softness in physical units (a row is
-/// rate + softness·impulse = velocity), stable for any softness. [sim]
+/// rate + softness·impulse = velocity), stable for any softness. And with gyroscopic torques, which Bullet leaves out
+/// for light bodies (its 3x3 solver takes determinants under 1.2e-7 for zero). [sim]
 class IslandSolver : public btSequentialImpulseConstraintSolver {
  public:
   BT_DECLARE_ALIGNED_ALLOCATOR();
 
+  void set_direct(bool on) { direct_wanted_ = on; }
+  bool direct_wanted() const { return direct_wanted_; }
+  IslandDirect& direct() { return direct_; }
+  const IslandDirect& direct() const { return direct_; }
+
  protected:
+  void convertBodies(btCollisionObject** bodies, int count, const btContactSolverInfo& info) override;
   void convertJoints(btTypedConstraint** constraints, int count, const btContactSolverInfo& info) override;
+  btScalar solveGroupCacheFriendlyIterations(btCollisionObject** bodies, int body_count,
+                                             btPersistentManifold** manifolds, int manifold_count,
+                                             btTypedConstraint** constraints, int constraint_count,
+                                             const btContactSolverInfo& info, btIDebugDraw* drawer) override;
   btScalar solveSingleIteration(int iteration, btCollisionObject** bodies, int body_count,
                                 btPersistentManifold** manifolds, int manifold_count, btTypedConstraint** constraints,
                                 int constraint_count, const btContactSolverInfo& info, btIDebugDraw* drawer) override;
@@ -32,6 +47,8 @@ class IslandSolver : public btSequentialImpulseConstraintSolver {
                                          const btContactSolverInfo& info) override;
 
  private:
+  bool plan_direct(btTypedConstraint** constraints, int count, const btContactSolverInfo& info);
+  void convert_all(btTypedConstraint** constraints, int count, const btContactSolverInfo& info);
   void convert_rows(JointConstraint& joint, btSolverConstraint* rows, int count, const btContactSolverInfo& info);
   JointBlock& add_rows(const btSolverConstraint* rows, int count, bool bounded, int locked);
   btScalar sweep_joints();
@@ -44,6 +61,9 @@ class IslandSolver : public btSequentialImpulseConstraintSolver {
     JointBlock block;
   };
   btAlignedObjectArray<JointRows> joints_;
+  IslandDirect direct_;
+  bool direct_wanted_ = false;
+  bool direct_here_ = false;  // in the island at hand
 };
 
 /// What a world is made of; a base of IslandWorld so that it outlives Bullet's part.
@@ -53,7 +73,9 @@ struct WorldParts {
   std::unique_ptr<btDefaultCollisionConfiguration> configuration;
   std::unique_ptr<btCollisionDispatcher> dispatcher;
   std::unique_ptr<btDbvtBroadphase> broadphase;
-  std::unique_ptr<IslandSolver> solver;  ///< On the heap: nothing of it outlives a step.
+  /// One for each of the team's members; on the heap: nothing of them outlives a step.
+  std::vector<std::unique_ptr<IslandSolver>> solvers;
+  std::shared_ptr<Team> team;
 };
 
 /// Joints and contacts of an island are solved in an order that depends on that island alone (joints as added,
@@ -81,7 +103,12 @@ class IslandWorld : private WorldParts, public btDiscreteDynamicsWorld {
   /// Objects of one group, >= 0, don't collide with each other from now on; -1: of none.
   void set_apart(btCollisionObject& object, int group);
 
-  IslandSolver& island_solver() { return *solver; }
+  /// From the next step on: joints exactly, as trees; or everything by sweeps.
+  void set_direct(bool on);
+  /// Since the world was made.
+  DirectCounts direct_counts() const;
+  /// Of the islands that this thread solves: all, without a team.
+  IslandDirect& direct() { return solvers.front()->direct(); }
 
  protected:
   void solveConstraints(btContactSolverInfo& info) override;
@@ -97,7 +124,9 @@ class IslandWorld : private WorldParts, public btDiscreteDynamicsWorld {
   void sort_bodies();
   void sort_joints();
   void sort_contacts();
+  void gather_batches(int least);
   void solve_islands(const btContactSolverInfo& info);
+  void solve_batch(int batch, IslandSolver& solver, const btContactSolverInfo& info);
 
   // Scratch of one internal step, kept so that nothing is allocated once the scene stands. Items of island i are
   // bodies_[body_start_[i]] up to bodies_[body_start_[i + 1]], and so on.
@@ -111,6 +140,7 @@ class IslandWorld : private WorldParts, public btDiscreteDynamicsWorld {
   btAlignedObjectArray<btTypedConstraint*> joints_;
   btAlignedObjectArray<Touch> touches_;
   btAlignedObjectArray<btPersistentManifold*> contacts_;
+  btAlignedObjectArray<int> batches_;  // islands of batch i: batches_[i] up to batches_[i + 1]
 };
 
 }  // namespace limber

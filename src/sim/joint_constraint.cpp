@@ -77,6 +77,8 @@ void JointConstraint::reset(const Vec3& near) {
   motor_impulse_.fill(0);
   repair_impulse_.fill(0);
   last_impulse_.fill(0);
+  tree_memory_.fill(0);
+  taken_by_locks_ = 0;
   tick_impulse_.fill(0);
   applied_.fill(0);
   learnt_inertia_.fill(0);

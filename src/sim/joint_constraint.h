@@ -6,10 +6,12 @@
 #include <array>
 #include <cstdint>
 #include <memory>
+#include <span>
 #include <vector>
 
 #include "base/vec.h"
 #include "sim/bullet.h"
+#include "sim/tree_rows.h"
 
 namespace limber {
 
@@ -109,6 +111,39 @@ class JointConstraint : public btTypedConstraint {
   double effective_inertia(int axis) const;
 
   // For IslandSolver and IslandWorld.
+  // motor: counts as applied; repair: of a limit that was passed
+  enum class RowKind : std::uint8_t { plain, motor, repair, lock };
+  /// One row to come: rate + softness·impulse = velocity, impulse within [lower, upper].
+  struct Row {
+    btScalar velocity;
+    btScalar softness;
+    btScalar lower;
+    btScalar upper;
+    std::uint8_t axis;
+    RowKind kind;
+  };
+  /// Gradient of an axis's rate: on the child; the parent's linear part is the negative.
+  struct Jacobian {
+    btVector3 linear;
+    btVector3 angular_a;
+    btVector3 angular_b;
+  };
+  /// Reads the pose and plans the rows of the coming internal step.
+  std::span<const Row> plan();
+  std::span<const Row> planned() const { return *rows_; }
+  Jacobian jacobian(int axis) const;
+  /// From each part's centre of mass to the child's pivot, world; the parent-side frame's axes; the dual axes, of which
+  /// the angular rates are dual·(spin of the child - spin of the parent).
+  const btVector3& arm_a() const { return arm_a_; }
+  const btVector3& arm_b() const { return arm_b_; }
+  const btVector3& linear_axis(int i) const { return axis_a_[static_cast<std::size_t>(i)]; }
+  const btVector3& dual_axis(int i) const { return dual_[static_cast<std::size_t>(i)]; }
+  /// What TreeRows remembers of this joint from step to step.
+  TreeMemory& tree_memory() { return tree_memory_; }
+  /// What the locks of the tree that begins here have taken from it, J, >= 0: they may give it back.
+  double& taken_by_locks() { return taken_by_locks_; }
+  /// Impulses of the planned rows, in their order, once the step is solved.
+  void take_impulses(std::span<const double> impulses);
   /// Length of the internal step that the next rows are for, s.
   void set_step(btScalar h) { h_ = h; }
   /// Impulses of the rows just solved, in the order in which getInfo2 wrote them.
@@ -118,6 +153,7 @@ class JointConstraint : public btTypedConstraint {
   bool has_bounded_row() const { return bounded_row_; }
   /// Impulses for these rows to start from, after those of the step before.
   const float* warm_impulses() const { return warm_.data(); }
+  void forget_impulses() { warm_.fill(0); }
   /// Ends a tick: averages what was applied, refreshes the readouts.
   void end_tick();
 
@@ -131,34 +167,17 @@ class JointConstraint : public btTypedConstraint {
   static constexpr btTypedConstraintType kType = MAX_CONSTRAINT_TYPE;
 
  private:
-  // motor: counts as applied; repair: of a limit that was passed
-  enum class RowKind : std::uint8_t { plain, motor, repair, lock };
-  // One row to come: rate + softness·impulse = velocity, impulse within [lower, upper].
-  struct Row {
-    btScalar velocity;
-    btScalar softness;
-    btScalar lower;
-    btScalar upper;
-    std::uint8_t axis;
-    RowKind kind;
-  };
   static constexpr std::size_t kUsualRows = 10;  // five locks; motor, damping, friction, two limits
-
-  struct Jacobian {
-    btVector3 linear;  // on the child; the parent's is the negative
-    btVector3 angular_a;
-    btVector3 angular_b;
-  };
 
   void choose_order();
   void read_pose(bool principal = false);
   void read_angles(const btVector3* axes_b, bool principal);
   void read_rates();
   double unwrapped(int axis, double raw) const;
-  Jacobian jacobian(int axis) const;
   static btScalar mobility(const btRigidBody& a, const btRigidBody& b, const Jacobian& i, const Jacobian& j);
 
   void plan_rows();
+  void take_impulse(const Row& row, btScalar impulse, btScalar step);
   void plan_lock(int axis);
   void plan_motion(int axis);
   void plan_motor(int axis);
@@ -184,6 +203,8 @@ class JointConstraint : public btTypedConstraint {
   std::array<float, 6> motor_impulse_{};  // of the last internal step
   std::array<float, 6> last_impulse_{};   // of locks and motors, by axis
   std::array<float, 7> warm_{};
+  TreeMemory tree_memory_{};
+  double taken_by_locks_ = 0;
   std::array<float, 6> repair_impulse_{};  // of the last internal step, on a limit that was passed
   std::array<float, 6> tick_impulse_{};    // of the tick so far
   std::array<float, 6> applied_{};

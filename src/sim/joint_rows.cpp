@@ -31,9 +31,14 @@ btScalar softness(const AxisSettings& s, btScalar h) { return s.stop_cfm * s.sto
 
 }  // namespace
 
-void JointConstraint::getInfo1(btConstraintInfo1* info) {
+std::span<const JointConstraint::Row> JointConstraint::plan() {
   read_pose();
   plan_rows();
+  return planned();
+}
+
+void JointConstraint::getInfo1(btConstraintInfo1* info) {
+  plan();
   info->m_numConstraintRows = row_count_;
   info->nub = 0;
 }
@@ -63,19 +68,36 @@ void JointConstraint::getInfo2(btConstraintInfo2* info) {
 
 void JointConstraint::take_impulses(const btSolverConstraint* rows, int count) {
   for (int r = 0; r < count && r < row_count_; ++r) {
-    const Row& row = (*rows_)[at(r)];
-    const btScalar impulse = rows[r].m_appliedImpulse;
-    // of a repair only what made the axis move: what bore a load is not taken back, or the limit would hold on to it
-    if (row.kind == RowKind::repair) {
-      repair_impulse_[row.axis] = std::min(std::fabs(impulse), std::fabs(row.velocity) * rows[r].m_jacDiagABInv);
-    }
-    if (row.kind == RowKind::motor || row.kind == RowKind::lock) last_impulse_[row.axis] = impulse;
-    if (row.kind != RowKind::motor) continue;
-    motor_impulse_[row.axis] = impulse;
-    tick_impulse_[row.axis] += impulse;
-    if (row.softness == 0) pair_inertia_[row.axis] = rows[r].m_jacDiagABInv;
+    take_impulse((*rows_)[at(r)], rows[r].m_appliedImpulse, rows[r].m_jacDiagABInv);
   }
   tick_time_ += h_;
+}
+
+void JointConstraint::take_impulses(std::span<const double> impulses) {
+  for (std::size_t r = 0; r < impulses.size() && r < rows_->size(); ++r) {
+    const Row& row = (*rows_)[r];
+    btScalar step = 0;
+    if (row.kind == RowKind::repair || row.kind == RowKind::motor) {
+      const Jacobian j = jacobian(row.axis);
+      const btScalar eases = mobility(m_rbA, m_rbB, j, j);
+      step = eases > SIMD_EPSILON ? 1 / (eases + row.softness) : 0;
+    }
+    take_impulse(row, to_scalar(impulses[r]), step);
+  }
+  tick_time_ += h_;
+}
+
+// `step`: impulse per rate, of this row alone.
+void JointConstraint::take_impulse(const Row& row, btScalar impulse, btScalar step) {
+  // of a repair only what made the axis move: what bore a load is not taken back, or the limit would hold on to it
+  if (row.kind == RowKind::repair) {
+    repair_impulse_[row.axis] = std::min(std::fabs(impulse), std::fabs(row.velocity) * step);
+  }
+  if (row.kind == RowKind::motor || row.kind == RowKind::lock) last_impulse_[row.axis] = impulse;
+  if (row.kind != RowKind::motor) return;
+  motor_impulse_[row.axis] = impulse;
+  tick_impulse_[row.axis] += impulse;
+  if (row.softness == 0) pair_inertia_[row.axis] = step;
 }
 
 void JointConstraint::plan_rows() {

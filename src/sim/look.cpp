@@ -21,8 +21,20 @@ const Table& Look::table() {
           number("grid", "", 1, 0, 10, "How plain the lines on the floor are, a metre apart."),
           number("mirror", "", 1, 0, 3, "How much the floor mirrors; the studio's does not."),
           boolean("floor", true, "A floor at height 0, where no plane of the scene is one."),
+          live(
+              state(boolean("overlay", false,
+                            "Joint axes and limits, centres of mass, forces, contacts and targets over the picture."))),
+          act<&Look::act_prefer>(action(
+              "prefer", 1, 1, "A style by its number (0: stage, 1: studio), unless the scene says which one it has.")),
       });
   return table;
+}
+
+Result<void> Look::act_prefer(std::span<const double> args) {
+  const Row& style = table().at("style");
+  if ((store_.said(id_) >> style.index & 1u) != 0) return {};
+  if (const Result<SetOutcome> set = store_.set(id_, style, args); !set) return Error{set.error()};
+  return {};
 }
 
 }  // namespace limber

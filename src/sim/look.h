@@ -9,10 +9,13 @@ class Look {
  public:
   static const Table& table();
 
-  Look(Store& store, NodeId parent) : id_(store.add(table(), parent, "look", this)) {}
+  Look(Store& store, NodeId parent) : store_(store), id_(store.add(table(), parent, "look", this)) {}
   NodeId id() const { return id_; }
 
  private:
+  Result<void> act_prefer(std::span<const double> args);
+
+  Store& store_;
   NodeId id_;
 };
 

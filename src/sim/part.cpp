@@ -231,8 +231,9 @@ void Part::tell() {
 bool Part::reports_contacts() const { return reports_; }
 
 void Part::effect_mass() {
+  static const Row& row = table().at("mass");
   if (is_static_) return;
-  const double mass = body_.store().values(id_, table().at("mass"))[0];
+  const double mass = body_.store().values(id_, row)[0];
   rigid_->setMassProps(static_cast<btScalar>(mass), to_bt(geometry_->unit_inertia * mass));
   rigid_->updateInertiaTensor();
   // Bullet keeps gravity as a force, which was made with the old mass
@@ -240,16 +241,21 @@ void Part::effect_mass() {
 }
 
 void Part::effect_damping() {
+  static const Row& linear = table().at("linear_damping");
+  static const Row& angular = table().at("angular_damping");
   const Store& store = body_.store();
-  rigid_->setDamping(static_cast<btScalar>(store.values(id_, table().at("linear_damping"))[0]),
-                     static_cast<btScalar>(store.values(id_, table().at("angular_damping"))[0]));
+  rigid_->setDamping(static_cast<btScalar>(store.values(id_, linear)[0]),
+                     static_cast<btScalar>(store.values(id_, angular)[0]));
 }
 
 void Part::effect_surface() {
+  static const Row& friction = table().at("friction");
+  static const Row& rolling = table().at("rolling_friction");
+  static const Row& bounce = table().at("restitution");
   const Store& store = body_.store();
-  rigid_->setFriction(static_cast<btScalar>(store.values(id_, table().at("friction"))[0]));
-  rigid_->setRollingFriction(static_cast<btScalar>(store.values(id_, table().at("rolling_friction"))[0]));
-  const auto restitution = static_cast<btScalar>(store.values(id_, table().at("restitution"))[0]);
+  rigid_->setFriction(static_cast<btScalar>(store.values(id_, friction)[0]));
+  rigid_->setRollingFriction(static_cast<btScalar>(store.values(id_, rolling)[0]));
+  const auto restitution = static_cast<btScalar>(store.values(id_, bounce)[0]);
   rigid_->setRestitution(restitution);
   // what bounces must not be braked before it touches: Bullet's contacts ahead would eat a part of the bounce
   const btScalar ahead = restitution > 0 && !is_static_ ? btScalar(0) : btScalar(BT_LARGE_FLOAT);

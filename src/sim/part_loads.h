@@ -48,6 +48,13 @@ class PartLoads {
   void clear(std::uint32_t place);
   /// What waits is lost.
   void drop();
+  /// Calls f(load, kick) for each part that something waits for.
+  template <class F>
+  void each_waiting(F&& f) const {
+    for (const std::uint32_t place : waiting_) {
+      if (loads_[place].part != nullptr) f(loads_[place], kicks_[place]);
+    }
+  }
   /// Before Bullet steps: hands over what waits. Nothing waits longer.
   void push();
 

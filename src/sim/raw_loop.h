@@ -24,6 +24,7 @@ struct ArmScene {
   int substeps = 4;         ///< Internal steps of a tick.
 
   bool hanging = false;  ///< From bases above the floor, instead of standing on it.
+  bool direct = false;   ///< Ours: with the direct solver.
 
   /// A part's centre when the arm is straight; part -1 is the base, which does not move.
   Vec3 center(int arm, int part) const;

@@ -22,13 +22,13 @@ constexpr double kMaxSpin = 1000;
 constexpr double kMaxDistance = 1e4;
 
 struct WorldRows {
-  const Row *gravity, *timestep, *substeps, *iterations, *seed, *time, *tick;
+  const Row *gravity, *timestep, *substeps, *iterations, *seed, *time, *tick, *solver, *fallbacks;
 };
 
 const WorldRows& world_rows() {
   static const auto at = [](const char* name) { return &World::table().at(name); };
-  static const WorldRows found{at("gravity"), at("timestep"), at("substeps"), at("solver_iterations"),
-                               at("seed"),    at("time"),     at("tick")};
+  static const WorldRows found{at("gravity"), at("timestep"), at("substeps"), at("solver_iterations"), at("seed"),
+                               at("time"),    at("tick"),     at("solver"),   at("solver_fallbacks")};
   return found;
 }
 
@@ -47,7 +47,9 @@ const Table& World::table() {
           effect<&World::effect_panic_motors>(
               choice("panic_motors", {"held", "limp"}, 0,
                      "What motors do while a panic holds: stay where they are, with their own strength, or nothing.")),
-          choice("solver", {"iterative"}, 0, "How joints and contacts are solved."),
+          effect<&World::effect_solver>(
+              choice("solver", {"iterative", "direct"}, 1,
+                     "How joints are solved: in rounds with the contacts, or exactly, as trees.")),
           live(state(
               integer("seed", 1, 0, 9007199254740992,
                       "What every random draw derives from: a behaviour's at once, a scene's from the next start."))),
@@ -58,6 +60,8 @@ const Table& World::table() {
           live(readout(integer("tick", 0, 0, kUnbounded, "Ticks since the start."))),
           live(readout(boolean("panicked", false, "A panic holds: everything comes to rest."))),
           act<&World::act_panic>(action("panic", 0, 0, Panic::kDoc)),
+          live(readout(integer("solver_fallbacks", 0, 0, kUnbounded,
+                               "Steps of islands that the direct solver left to the iterative one, since the start."))),
           act<&World::act_reset>(action("reset", 0, 0, "The scene from its start, with the performer's values.")),
       });
   return table;
@@ -96,6 +100,7 @@ void World::restart_time(std::uint64_t tick, double time) {
   tick_ = tick;
   store_.tell(id_, *world_rows().time)[0] = time;
   store_.tell(id_, *world_rows().tick)[0] = static_cast<double>(tick);
+  store_.tell(id_, *world_rows().fallbacks)[0] = 0;
 }
 
 Result<void> World::name_is_free(NodeId group, std::string_view kind, std::string_view name) const {
@@ -182,6 +187,7 @@ void World::effect_gravity() {
 
 void World::effect_solver() {
   bullet_->getSolverInfo().m_numIterations = static_cast<int>(store_.values(id_, *world_rows().iterations)[0]);
+  bullet_->set_direct(store_.values(id_, *world_rows().solver)[0] != 0);
 }
 
 Result<void> World::act_reset(std::span<const double>) {
@@ -212,16 +218,19 @@ void World::step() {
     if (body->in_world() && !panic_.on()) body->follow_leaders();
   }
   if (panic_.on()) loads_.drop();
+  overlay_.take_loads(loads_);
   loads_.push();
   contacts_.begin_tick();
   const double before = clock_seconds();
   const int substeps = static_cast<int>(store_.values(id_, *world_rows().substeps)[0]);
+  const std::uint64_t fallbacks = bullet_->direct_counts().fallbacks;
   bullet_->step(timestep() / substeps, substeps);
   const double after = clock_seconds();
   contacts_.end_tick();
   tick_++;
   store_.tell(id_, *world_rows().time)[0] += timestep();
   store_.tell(id_, *world_rows().tick)[0] = static_cast<double>(tick_);
+  store_.tell(id_, *world_rows().fallbacks)[0] += static_cast<double>(bullet_->direct_counts().fallbacks - fallbacks);
   for (const auto& body : bodies_) {
     if (!body->in_world()) continue;
     body->tell();

@@ -15,6 +15,7 @@
 #include "sim/camera_moves.h"
 #include "sim/contacts.h"
 #include "sim/island_world.h"
+#include "sim/overlay.h"
 #include "sim/panic.h"
 #include "sim/part_solids.h"
 #include "sim/shape.h"
@@ -120,6 +121,8 @@ class World {
   PartSolids& solids() { return solids_; }
   IslandWorld& bullet() { return *bullet_; }
   BulletMemory& bullet_memory() { return bullet_memory_; }
+  /// What the debug picture shows.
+  const Overlay& overlay() const { return overlay_; }
   Contacts& contact_log() { return contacts_; }
   /// What takes a guarded call of a script back.
   WorldUndo& undo() { return undo_; }
@@ -158,6 +161,7 @@ class World {
   Contacts contacts_;
   WorldUndo undo_{*this};
   Panic panic_{*this};
+  Overlay overlay_{*this};
   TickTimes times_;
   std::uint64_t tick_ = 0;
   std::uint64_t health_events_ = 0;

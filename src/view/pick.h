@@ -16,7 +16,7 @@ struct Picked {
 };
 
 /// The nearest at that place (-1 .. 1, right and up), seen as that lens sees it; planes and what is not drawn are none.
-/// Boxes, spheres and boxes around all else. [any]
+/// By its true form: balls, boxes, and the triangles of all else. [any]
 std::optional<Picked> pick(const Snapshot& now, const Lens& lens, double x, double y);
 
 /// A direction from the eye through that place.

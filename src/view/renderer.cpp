@@ -5,6 +5,8 @@
 #include <array>
 #include <cstddef>
 
+#include <span>
+
 #include <fmt/format.h>
 #include <glm/gtc/matrix_transform.hpp>
 #include <glm/gtc/type_ptr.hpp>
@@ -49,11 +51,8 @@ Renderer::Renderer(std::string shader_folder, const Grade& grade, std::string de
       nothing_(GlVertexArray::make()),
       lamp_(make_depth(grade.lamp_map, true)),
       ground_(make_depth(grade.ground_map, false)),
-      canvas_(GlFramebuffer::make()),
-      resolved_(GlFramebuffer::make()),
-      color_(GlRenderbuffer::make()),
-      depth_(GlRenderbuffer::make()),
-      picture_(GlRenderbuffer::make()) {
+      overlay_buffer_(GlBuffer::make()),
+      overlay_array_(GlVertexArray::make()) {
   glGetIntegerv(GL_MAX_RENDERBUFFER_SIZE, &largest_);
   largest_ = std::min(largest_, 16384);
 }
@@ -88,11 +87,11 @@ Renderer::DepthMap Renderer::make_depth(int side, bool compares) {
   return map;
 }
 
-Result<void> Renderer::resize(int width, int height) {
+Result<void> Renderer::resize(Canvas& canvas, int width, int height) {
   if (width > largest_ || height > largest_)
     return Error{fmt::format("a picture of {} × {} is too large: {} draws up to {} a side", width, height, gl_driver(),
                              largest_)};
-  if (width == width_ && height == height_) return {};
+  if (width == canvas.width && height == canvas.height) return {};
   const auto store = [&](const GlRenderbuffer& buffer, GLenum format, int samples) {
     glBindRenderbuffer(GL_RENDERBUFFER, *buffer);
     glRenderbufferStorageMultisample(GL_RENDERBUFFER, samples, format, width, height);
@@ -100,19 +99,19 @@ Result<void> Renderer::resize(int width, int height) {
   GLint most = 0;
   glGetIntegerv(GL_MAX_SAMPLES, &most);
   const int samples = std::min(grade_.samples, most);
-  store(color_, GL_SRGB8_ALPHA8, samples);
-  store(depth_, GL_DEPTH_COMPONENT24, samples);
-  store(picture_, GL_SRGB8_ALPHA8, 0);
-  glBindFramebuffer(GL_FRAMEBUFFER, *canvas_);
-  glFramebufferRenderbuffer(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_RENDERBUFFER, *color_);
-  glFramebufferRenderbuffer(GL_FRAMEBUFFER, GL_DEPTH_ATTACHMENT, GL_RENDERBUFFER, *depth_);
+  store(canvas.color, GL_SRGB8_ALPHA8, samples);
+  store(canvas.depth, GL_DEPTH_COMPONENT24, samples);
+  store(canvas.picture, GL_SRGB8_ALPHA8, 0);
+  glBindFramebuffer(GL_FRAMEBUFFER, *canvas.samples);
+  glFramebufferRenderbuffer(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_RENDERBUFFER, *canvas.color);
+  glFramebufferRenderbuffer(GL_FRAMEBUFFER, GL_DEPTH_ATTACHMENT, GL_RENDERBUFFER, *canvas.depth);
   const bool whole = glCheckFramebufferStatus(GL_FRAMEBUFFER) == GL_FRAMEBUFFER_COMPLETE;
-  glBindFramebuffer(GL_FRAMEBUFFER, *resolved_);
-  glFramebufferRenderbuffer(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_RENDERBUFFER, *picture_);
+  glBindFramebuffer(GL_FRAMEBUFFER, *canvas.resolved);
+  glFramebufferRenderbuffer(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_RENDERBUFFER, *canvas.picture);
   if (!whole || glGetError() == GL_OUT_OF_MEMORY)
     return Error{fmt::format("OpenGL has no room for a picture of {} × {}", width, height)};
-  width_ = width;
-  height_ = height;
+  canvas.width = width;
+  canvas.height = height;
   return {};
 }
 
@@ -253,11 +252,55 @@ void Renderer::draw_floors(const Lighting& lighting, const LookView& look) {
   glEnable(GL_CULL_FACE);
 }
 
+// over everything, twice: plain where it is seen, faint where something stands before it
+void Renderer::draw_overlay(const Snapshot& before, const Snapshot& now, double mix, const Canvas& canvas) {
+  constexpr double kLinesOfHeight = 720;  // of which one is a pixel wide
+  constexpr float kBehind = 0.3F;
+  if (now.overlay.empty()) return;
+  overlay_.gather(before, now, mix, std::max(1.0, 1.3 * canvas.height / kLinesOfHeight));
+  const std::span<const OverlayLine> lines = overlay_.lines();
+  glBindVertexArray(*overlay_array_);
+  glBindBuffer(GL_ARRAY_BUFFER, *overlay_buffer_);
+  glBufferData(GL_ARRAY_BUFFER, static_cast<GLsizeiptr>(lines.size_bytes()), lines.data(), GL_STREAM_DRAW);
+  constexpr std::array<std::size_t, 3> kAt = {offsetof(OverlayLine, from), offsetof(OverlayLine, to),
+                                              offsetof(OverlayLine, paint)};
+  for (GLuint i = 0; i < kAt.size(); i++) {
+    glEnableVertexAttribArray(i);
+    glVertexAttribPointer(i, 4, GL_FLOAT, GL_FALSE, sizeof(OverlayLine), offset(kAt[i]));
+    glVertexAttribDivisor(i, 1);
+  }
+  glUseProgram(shaders_.program("overlay"));
+  glUniform4f(shaders_.uniform("overlay", "screen"), static_cast<float>(canvas.width),
+              static_cast<float>(canvas.height), 0, 0);
+  glDisable(GL_CULL_FACE);
+  glDepthMask(GL_FALSE);
+  glEnable(GL_BLEND);
+  const auto pass = [&](GLenum depth, float strength) {
+    glDepthFunc(depth);
+    glUniform4f(shaders_.uniform("overlay", "strength"), strength, 0, 0, 0);
+    glDrawArraysInstanced(GL_TRIANGLE_STRIP, 0, 4, static_cast<GLsizei>(lines.size()));
+  };
+  pass(GL_GREATER, kBehind);
+  pass(GL_LEQUAL, 1);
+  glDisable(GL_BLEND);
+  glDepthMask(GL_TRUE);
+  glEnable(GL_CULL_FACE);
+}
+
 Result<void> Renderer::draw(const Snapshot& before, const Snapshot& now, double mix, int width, int height,
                             const FreePart& free) {
+  return draw_into(canvas_, before, now, mix, width, height, free);
+}
+
+Result<void> Renderer::draw_output(const Snapshot& before, const Snapshot& now, double mix, int width, int height) {
+  return draw_into(output_, before, now, mix, width, height, {});
+}
+
+Result<void> Renderer::draw_into(Canvas& canvas, const Snapshot& before, const Snapshot& now, double mix, int width,
+                                 int height, const FreePart& free) {
   width = std::max(width, 1);
   height = std::max(height, 1);
-  if (Result<void> sized = resize(width, height); !sized) return sized;
+  if (Result<void> sized = resize(canvas, width, height); !sized) return sized;
   const CameraView camera = camera_of(now);
   const LookView look = look_of(now);
   const Lens lens = lens_of(camera, width, height, free);
@@ -291,7 +334,7 @@ Result<void> Renderer::draw(const Snapshot& before, const Snapshot& now, double 
   glBindTexture(GL_TEXTURE_2D, *ground_.texture);
   glActiveTexture(GL_TEXTURE0);
   glBindTexture(GL_TEXTURE_2D, *lamp_.texture);
-  glBindFramebuffer(GL_FRAMEBUFFER, *canvas_);
+  glBindFramebuffer(GL_FRAMEBUFFER, *canvas.samples);
   glViewport(0, 0, width, height);
   glClearColor(0, 0, 0, 1);
   glClear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
@@ -315,23 +358,24 @@ Result<void> Renderer::draw(const Snapshot& before, const Snapshot& now, double 
   draw_batches(list_.clear(), 0, false);
   glDisable(GL_BLEND);
   glDepthMask(GL_TRUE);
+  draw_overlay(before, now, mix, canvas);
 
-  glBindFramebuffer(GL_READ_FRAMEBUFFER, *canvas_);
-  glBindFramebuffer(GL_DRAW_FRAMEBUFFER, *resolved_);
+  glBindFramebuffer(GL_READ_FRAMEBUFFER, *canvas.samples);
+  glBindFramebuffer(GL_DRAW_FRAMEBUFFER, *canvas.resolved);
   glBlitFramebuffer(0, 0, width, height, 0, 0, width, height, GL_COLOR_BUFFER_BIT, GL_NEAREST);
   glBindVertexArray(0);
   return {};
 }
 
 Pixels Renderer::read() const {
-  Pixels pixels{width_, height_, {}};
-  const std::size_t row = 4 * static_cast<std::size_t>(width_);
-  pixels.bytes.resize(row * static_cast<std::size_t>(height_));
-  glBindFramebuffer(GL_READ_FRAMEBUFFER, *resolved_);
+  Pixels pixels{canvas_.width, canvas_.height, {}};
+  const std::size_t row = 4 * static_cast<std::size_t>(canvas_.width);
+  pixels.bytes.resize(row * static_cast<std::size_t>(canvas_.height));
+  glBindFramebuffer(GL_READ_FRAMEBUFFER, *canvas_.resolved);
   glPixelStorei(GL_PACK_ALIGNMENT, 1);
-  glReadPixels(0, 0, width_, height_, GL_RGBA, GL_UNSIGNED_BYTE, pixels.bytes.data());
+  glReadPixels(0, 0, canvas_.width, canvas_.height, GL_RGBA, GL_UNSIGNED_BYTE, pixels.bytes.data());
   // OpenGL's first row is the lowest
-  for (std::size_t low = 0, high = static_cast<std::size_t>(height_) - 1; low < high; low++, high--)
+  for (std::size_t low = 0, high = static_cast<std::size_t>(canvas_.height) - 1; low < high; low++, high--)
     std::swap_ranges(pixels.bytes.begin() + static_cast<std::ptrdiff_t>(low * row),
                      pixels.bytes.begin() + static_cast<std::ptrdiff_t>((low + 1) * row),
                      pixels.bytes.begin() + static_cast<std::ptrdiff_t>(high * row));
@@ -341,8 +385,8 @@ Pixels Renderer::read() const {
 
 void Renderer::draw_over(const std::function<void()>& draw) const {
   glDisable(GL_FRAMEBUFFER_SRGB);
-  glBindFramebuffer(GL_FRAMEBUFFER, *resolved_);
-  glViewport(0, 0, width_, height_);
+  glBindFramebuffer(GL_FRAMEBUFFER, *canvas_.resolved);
+  glViewport(0, 0, canvas_.width, canvas_.height);
   draw();
   glBindFramebuffer(GL_FRAMEBUFFER, 0);
 }
@@ -351,10 +395,21 @@ void Renderer::finish() { glFinish(); }
 
 void Renderer::show(int width, int height) const {
   glDisable(GL_FRAMEBUFFER_SRGB);  // the bytes as they are
-  glBindFramebuffer(GL_READ_FRAMEBUFFER, *resolved_);
+  glBindFramebuffer(GL_READ_FRAMEBUFFER, *canvas_.resolved);
   glBindFramebuffer(GL_DRAW_FRAMEBUFFER, 0);
-  const bool fits = width == width_ && height == height_;
-  glBlitFramebuffer(0, 0, width_, height_, 0, 0, width, height, GL_COLOR_BUFFER_BIT, fits ? GL_NEAREST : GL_LINEAR);
+  const bool fits = width == canvas_.width && height == canvas_.height;
+  glBlitFramebuffer(0, 0, canvas_.width, canvas_.height, 0, 0, width, height, GL_COLOR_BUFFER_BIT,
+                    fits ? GL_NEAREST : GL_LINEAR);
+}
+
+void Renderer::show_output(const GlFramebuffer& frame, int width, int height) const {
+  glDisable(GL_FRAMEBUFFER_SRGB);
+  glBindFramebuffer(GL_READ_FRAMEBUFFER, *frame);
+  // each time: what another context has made of it since is seen here once it is attached
+  glFramebufferRenderbuffer(GL_READ_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_RENDERBUFFER, *output_.picture);
+  glBindFramebuffer(GL_DRAW_FRAMEBUFFER, 0);
+  glBlitFramebuffer(0, 0, output_.width, output_.height, 0, 0, width, height, GL_COLOR_BUFFER_BIT,
+                    output_.width == width && output_.height == height ? GL_NEAREST : GL_LINEAR);
 }
 
 }  // namespace limber

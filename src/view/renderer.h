@@ -11,6 +11,7 @@
 #include "view/gl.h"
 #include "view/lens.h"
 #include "view/lighting.h"
+#include "view/overlay_lines.h"
 #include "view/pixels.h"
 #include "view/shaders.h"
 
@@ -29,6 +30,8 @@ class Renderer {
   Result<void> draw(const Snapshot& before, const Snapshot& now, double mix, int width, int height,
                     const FreePart& free = {});
   Result<void> draw(const Snapshot& now, int width, int height) { return draw(now, now, 1, width, height); }
+  /// A second picture of the same, with nothing over it, beside the one that draw() makes. [main]
+  Result<void> draw_output(const Snapshot& before, const Snapshot& now, double mix, int width, int height);
   /// Calls what draws over the picture drawn last, which is bound, its colours as they are. [main]
   void draw_over(const std::function<void()>& draw) const;
   /// The picture drawn last. [main]
@@ -37,6 +40,9 @@ class Renderer {
   static void finish();
   /// Copies it into the window's own framebuffer, stretched to that size. [main]
   void show(int width, int height) const;
+  /// The same of the second picture, in another context that shares objects with this one and is current there.
+  /// `frame` is a framebuffer of that context. [main]
+  void show_output(const GlFramebuffer& frame, int width, int height) const;
 
   /// Takes over shaders that were saved; true: the picture looks different now. [main]
   bool renew_shaders() { return shaders_.renew(); }
@@ -56,10 +62,23 @@ class Renderer {
     GlTexture texture;
     GlFramebuffer frame;
   };
+  /// What one picture is drawn into.
+  struct Canvas {
+    GlFramebuffer samples = GlFramebuffer::make();
+    GlFramebuffer resolved = GlFramebuffer::make();
+    GlRenderbuffer color = GlRenderbuffer::make();
+    GlRenderbuffer depth = GlRenderbuffer::make();
+    GlRenderbuffer picture = GlRenderbuffer::make();
+    int width = 0;
+    int height = 0;
+  };
   Renderer(std::string shader_folder, const Grade& grade, std::string defines);
 
   static DepthMap make_depth(int side, bool compares);
-  Result<void> resize(int width, int height);
+  Result<void> resize(Canvas& canvas, int width, int height);
+  Result<void> draw_into(Canvas& canvas, const Snapshot& before, const Snapshot& now, double mix, int width, int height,
+                         const FreePart& free);
+  void draw_overlay(const Snapshot& before, const Snapshot& now, double mix, const Canvas& canvas);
   const GpuMesh& mesh(const MeshKey& key, int detail);
   void forget_meshes();
   void upload(const FrameBlock& frame);
@@ -78,10 +97,10 @@ class Renderer {
   GlBuffer instances_, frame_;
   GlVertexArray nothing_;  // for what makes its corners in the shader
   DepthMap lamp_, ground_;
-  GlFramebuffer canvas_, resolved_;
-  GlRenderbuffer color_, depth_, picture_;
-  int width_ = 0;
-  int height_ = 0;
+  Canvas canvas_, output_;
+  OverlayLines overlay_;
+  GlBuffer overlay_buffer_;
+  GlVertexArray overlay_array_;
   int largest_ = 0;
 };
 

@@ -27,10 +27,11 @@ struct ProgramFiles {
   const char* vertex;
   const char* fragment;
 };
-constexpr std::array<ProgramFiles, 4> kPrograms = {{{"shape", "shape.vert", "shape.frag"},
+constexpr std::array<ProgramFiles, 5> kPrograms = {{{"shape", "shape.vert", "shape.frag"},
                                                     {"depth", "shape.vert", "depth.frag"},
                                                     {"floor", "floor.vert", "floor.frag"},
-                                                    {"sky", "sky.vert", "sky.frag"}}};
+                                                    {"sky", "sky.vert", "sky.frag"},
+                                                    {"overlay", "overlay.vert", "overlay.frag"}}};
 
 template <class Get>
 std::string log_of(GLuint name, Get get) {

@@ -70,6 +70,30 @@ TEST(Bench, DrawsSmallAndLarge) {
   EXPECT_EQ(figures["large"]["parts"], 17000);
 }
 
+TEST(Bench, SolvesEachMachineTwice) {
+  BenchOptions options;
+  options.ticks = 3;
+  const Json figures = figures_of("solver", options);
+  for (const char* scene : {"arm", "square wave, 5 N·m, 1/240 s", "tree, floating", "four legs walking", "100 arms"}) {
+    const Json& direct = figures[scene]["direct"];
+    EXPECT_GE(direct["island_steps"]["direct"], 3) << scene;
+    EXPECT_EQ(direct["island_steps"]["fallbacks"], 0) << scene;
+    EXPECT_LT(direct["residuals"]["locked"], 1e-4) << scene;
+    EXPECT_GT(figures[scene]["time_ratio"]["median"], 0) << scene;
+  }
+  EXPECT_EQ(figures["random trees over a floor, 1/60 s"]["no_number"], 0);
+}
+
+TEST(Bench, TwoThreadsComeToWhatOneComesTo) {
+  BenchOptions options;
+  options.ticks = 1;
+  const Json figures = figures_of("threads", options);
+  for (const char* scene : {"100 arms, direct", "1000 arms, direct", "100 arms, iterative"}) {
+    EXPECT_EQ(figures[scene]["same_state"], true) << scene;
+    EXPECT_GT(figures[scene]["ratio"]["median"], 0) << scene;
+  }
+}
+
 TEST(Bench, RecordsAndReplaysATake) {
   BenchOptions options;
   options.ticks = 20;

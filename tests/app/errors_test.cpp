@@ -84,7 +84,7 @@ void write_inputs(const Folder& folder) {
   folder.file("erring.lua", "sim:on_step(function() error('oh') end)\n");
   folder.file("endless.lua", "while true do end\n");
   folder.file("heavy.lua",
-              "sim.substeps, sim.solver_iterations = 1000, 10000\n"
+              "sim.solver, sim.substeps, sim.solver_iterations = 'iterative', 1000, 10000\n"
               "local ball = sim:add_sphere_shape('ball', 0.1)\n"
               "local chain = sim:add_body('chain')\n"
               "local before = chain:add_part('0', ball, { mass = 0 })\n"

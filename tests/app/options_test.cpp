@@ -23,8 +23,8 @@ TEST(Options, EachCommandHasHelp) {
   }
   const std::string play = run({"play", "--help"}).out;
   for (const char* option :
-       {"--headless", "--fast", "--duration", "--ticks", "--seed", "--set", "--osc-in", "--osc-allow", "--osc-out",
-        "--query", "--osc-optional", "--package-path", "--strict", "--hash"}) {
+       {"--headless", "--fast", "--duration", "--ticks", "--seed", "--threads", "--set", "--osc-in", "--osc-allow",
+        "--osc-out", "--query", "--osc-optional", "--package-path", "--strict", "--hash"}) {
     EXPECT_NE(play.find(option), std::string::npos) << option;
   }
 }

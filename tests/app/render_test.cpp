@@ -103,6 +103,19 @@ TEST(Render, CtrlCLeavesAWholeShorterFilm) {
   }
 }
 
+TEST(Render, SaysThatItHearsNobody) {
+  const Folder folder;
+  const std::string scene = folder.file("fall.lua", kFall);
+  const auto said = [&](std::vector<std::string> more) {
+    more.insert(more.begin(), {scene, "--screenshot", folder.path() + "/still.png"});
+    const Ran ran = Running(small(more)).finish();
+    EXPECT_EQ(ran.code, 0) << ran.err;
+    return ran.err;
+  };
+  EXPECT_NE(said({"--osc-in", "9100", "--query", "9101"}).find("--osc-in, --query are left aside"), std::string::npos);
+  EXPECT_EQ(said({"--osc-in", "off", "--osc-out", "off"}).find("left aside"), std::string::npos);
+}
+
 TEST(Render, TimeThatStandsStillIsSaid) {
   const Folder folder;
   const std::string scene = folder.file("fall.lua", kFall);

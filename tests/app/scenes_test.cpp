@@ -91,6 +91,35 @@ TEST(Scenes, AWrongOneChangesNothing) {
   EXPECT_TRUE(show.running.wait_for("first again\n", true));
 }
 
+TEST(Scenes, ATakeOfTheFolderPlaysInThePlaceOfTheShow) {
+  Evening show;
+  const auto refused = [&](std::vector<std::string> words, const std::string& why) {
+    words.insert(words.end(), {"--wait", "30"});
+    const Ran ran = show.send(std::move(words));
+    EXPECT_EQ(ran.code, 1);
+    EXPECT_NE(ran.err.find(why), std::string::npos) << ran.err;
+  };
+  refused({"/take/play"}, "there is no take in takes/ of the show's folder; /take/record makes one");
+  EXPECT_EQ(show.send({"/take/record", "dusk", "--wait", "30"}).out, "/take/recording dusk\n");
+  EXPECT_EQ(show.send({"/scene/wind", "8"}).code, 0);
+  refused({"/take/play", "dusk"}, "a take is being recorded already");
+  EXPECT_EQ(show.send({"/take/stop"}).out, "/take/stopped\n");
+  EXPECT_EQ(show.send({"/transport/scene", "second", "--wait", "30"}).out, "/transport/playing second\n");
+  refused({"/take/play", "dsk"}, "did you mean 'dusk'?");
+  refused({"/take/play", "../dusk"}, "there is no take '../dusk'");
+  EXPECT_EQ(show.send({"/list/bodies"}).out, "/list/bodies a b\n");
+  EXPECT_EQ(show.send({"/take/play", "--wait", "30"}).out, "/take/playing dusk\n");
+  ASSERT_TRUE(show.running.wait_for("every hash is the take's; the show goes on in your hands"));
+  EXPECT_EQ(show.send({"/list/bodies"}).out, "/list/bodies only_here\n");
+  EXPECT_EQ(show.send({"/get", "/scene/wind"}).out, "/scene/wind 8\n");
+  EXPECT_EQ(show.send({"/scene/wind", "2"}).code, 0);
+  // its scene is the one that is watched now
+  show.folder.file("scripts/first.lua", "sim:add_body('new')\nprint('first again')\n");
+  EXPECT_TRUE(show.running.wait_for("first again\n", true));
+  show.running.signal(SIGTERM);
+  EXPECT_EQ(show.running.finish().code, 0);
+}
+
 TEST(Scenes, EachHasPresetsOfItsOwn) {
   Evening show;
   const auto change = [&](const std::string& name) {

@@ -1,7 +1,12 @@
 // Real windows, on a display of the test's own: it opens, and the show outlives the display.
 #include <atomic>
+#include <cstdlib>
+#include <thread>
+
+#include <fmt/format.h>
 
 #include "app/program.h"
+#include "osc/osc_test_tools.h"
 
 namespace limber::app_test {
 namespace {
@@ -16,7 +21,7 @@ sim:on_step(function() if sim.tick % 60 == 0 then print("tick") end end)
 class Display {
  public:
   explicit Display(const std::string& screen = "320x240x24")
-      : server_({"Xvfb", "-displayfd", "1", "-screen", "0", screen, "-nolisten", "tcp"}) {
+      : server_({"Xvfb", "-displayfd", "1", "-screen", "0", screen, "-nolisten", "tcp", "-fbdir", folder_.path()}) {
     EXPECT_TRUE(server_.wait_for("\n", true)) << "apt-get install xvfb\n" << server_.err();
     name_ = ":" + server_.out().substr(0, server_.out().find('\n'));
   }
@@ -35,6 +40,21 @@ class Display {
     all.insert(all.end(), words.begin(), words.end());
     const Ran ran = Running(all).finish();
     EXPECT_EQ(ran.code, 0) << "apt-get install xdotool\n" << ran.err;
+  }
+  /// The colour of a pixel of the screen, 0xrrggbb, as the server's file of it has it (XWD: 25 numbers, colours, rows).
+  unsigned pixel(std::size_t x, std::size_t y) const {
+    const std::string screen = content(folder_.path() + "/Xvfb_screen0");
+    const auto number = [&](std::size_t i) {
+      unsigned value = 0;
+      for (std::size_t k = 0; k < 4; k++) value = value << 8 | static_cast<unsigned char>(screen[4 * i + k]);
+      return value;
+    };
+    if (screen.size() < 100) return 0;
+    const std::size_t at = number(0) + std::size_t{12} * number(19) + y * number(12) + 4 * x;
+    if (at + 4 > screen.size()) return 0;
+    unsigned color = 0;
+    for (std::size_t k = 3; k-- > 0;) color = color << 8 | static_cast<unsigned char>(screen[at + k]);
+    return color;
   }
   std::string settings() const { return content(folder_.path() + "/config/limber/panel.json"); }
 
@@ -67,6 +87,15 @@ TEST(Window, OpensWhereThereIsADisplayAndEndsCleanly) {
       Running(limber(quiet(scene, {"--ticks", "5", "--hash"}), display.environment())).finish().out.find("tick 5\n"),
       std::string::npos)
       << "and by itself";
+}
+
+TEST(Window, ATakeThatIsNotThereIsNotWaitedFor) {
+  const Display display;
+  const Ran ran = Running(limber({"--replay", "/nowhere/evening.take", "--osc-in", "off", "--osc-out", "off"},
+                                 display.environment()))
+                      .finish();
+  EXPECT_EQ(ran.code, 1) << ran.err;
+  EXPECT_NE(ran.err.find("/nowhere/evening.take: there is no such take"), std::string::npos) << ran.err;
 }
 
 // what the panel's hands do arrives in the scene, which says so
@@ -110,6 +139,103 @@ end)
   EXPECT_NE(display.settings().find("\"text_size\": 18"), std::string::npos) << display.settings();
 }
 
+// F10 opens it, it has the picture and no panel, may be sized, filled, closed, and the show goes on
+TEST(Window, ASecondOneHasThePictureAlone) {
+  const Display display("1280x720x24");
+  const Folder folder;
+  const std::string scene = folder.file("s.lua", R"(
+visuals.background = vec3(1 / 3, 1, 1)
+visuals.look.floor = false
+sim:on_step(function() if sim.tick % 30 == 0 then print("tick") end end)
+)");
+  std::vector<std::string> args = {scene,     "--osc-in", "off",    "--osc-out", "off",
+                                   "--query", "off",      "--size", "1280x720"};
+  Running running(limber(args, display.environment()));
+  ASSERT_TRUE(running.wait_for("limber: window 1280 × 720")) << running.err();
+  ASSERT_TRUE(running.wait_for("tick", true));
+  const auto waits_for = [&](auto&& is) {
+    for (int i = 0; i < 600 && !is(); i++) display.xdotool({"sleep", "0.1"});
+    return is();
+  };
+  const auto green = [&](std::size_t x, std::size_t y) {
+    const unsigned color = display.pixel(x, y);
+    return (color >> 8 & 0xff) > 200 && (color >> 16) < 60 && (color & 0xff) < 60;
+  };
+  const std::string output = "^Limber output: ";
+  const auto with_output = [&](std::vector<std::string> words) {
+    words.insert(words.begin(), {"search", "--name", output});
+    display.xdotool(words);
+  };
+  ASSERT_TRUE(waits_for([&] { return green(640, 300); })) << std::hex << display.pixel(640, 300);
+  ASSERT_TRUE(waits_for([&] { return !green(1240, 545); })) << "the panel lies there";
+  display.xdotool({"mousemove", "640", "300", "key", "F10"});
+  ASSERT_TRUE(running.wait_for("limber: output window 960 × 540")) << running.err();
+  // over the first one's panel there is the second's background
+  with_output({"windowmove", "320", "180"});
+  EXPECT_TRUE(waits_for([&] { return green(1240, 545); })) << std::hex << display.pixel(1240, 545);
+  with_output({"windowsize", "300", "200"});
+  EXPECT_TRUE(waits_for([&] { return !green(1240, 545) && green(610, 370); })) << "the panel is seen again";
+  // keys that are pressed in it act, too
+  with_output({"windowmove", "0", "0", "mousemove", "100", "100", "key", "F11"});
+  EXPECT_TRUE(waits_for([&] { return green(1240, 545) && green(100, 100); }));
+  display.xdotool({"key", "F11"});
+  EXPECT_TRUE(waits_for([&] { return !green(1240, 545); }));
+  display.xdotool({"key", "F10"});
+  EXPECT_TRUE(waits_for([&] { return !green(100, 100); })) << "away with it: the first one's panel is there";
+  // the show ends well while it is open again
+  display.xdotool({"mousemove", "640", "300", "key", "F10"});
+  EXPECT_TRUE(waits_for([&] { return green(100, 100); }));
+  running.signal(SIGINT);
+  const Ran ran = running.finish();
+  EXPECT_EQ(ran.code, 0) << ran.err;
+  EXPECT_EQ(ran.err.find("headless"), std::string::npos) << ran.err;
+}
+
+// everything at once: what the thread sanitizer looks at
+TEST(Window, AFloodReloadsAndHandsTogether) {
+  const Display display("640x480x24");
+  const Folder folder;
+  const auto save = [&](int number) {
+    return folder.file("s.lua", fmt::format(R"(
+local ball = sim:add_body("ball")
+ball:add_part("ball", sim:add_sphere_shape("ball", 0.1 + 0.001 * {0}), {{ mass = 1 }})
+ball:add_behavior("random_force", "wind", {{ max_amp = {0} }})
+sim:on_step(function() if sim.tick % 10 == 0 then print("run {0} tick " .. sim.tick) end end)
+)",
+                                            number));
+  };
+  Running running(limber({save(1), "--osc-in", "127.0.0.1:0", "--osc-out", "127.0.0.1:9", "--query", "off", "--size",
+                          "640x480", "--quality", "low"},
+                         display.environment()));
+  ASSERT_TRUE(running.wait_for("limber: window 640 × 480")) << running.err();
+  ASSERT_TRUE(running.wait_for("OSC in 127.0.0.1:"));
+  ASSERT_TRUE(running.wait_for("run 1 tick 60", true)) << "by then its files are watched";
+  const Endpoint in{0x7f000001, static_cast<std::uint16_t>(std::atoi(running.behind("OSC in 127.0.0.1:").c_str()))};
+  ASSERT_NE(in.port, 0);
+  const osc_test::Client client;
+  std::atomic<bool> floods{true};
+  std::thread flood([&] {
+    for (int i = 0; floods; i++) {
+      client.send(in, osc_test::one_float("/physics/body/ball/behavior/wind/max_amp", static_cast<float>(i % 7)));
+      client.send(in, osc_test::one_float("/visuals/look/overlay", static_cast<float>(i % 2)));
+      client.send(in, osc_test::one_float("/visuals/shape/ball/transparency", 0.01F * static_cast<float>(i % 90)));
+      if (i % 50 == 0) std::this_thread::yield();
+    }
+  });
+  for (int run = 2; run <= 6; run++) {
+    save(run);
+    display.xdotool({"mousemove", "320", "200", "key", "F3", "key", "F10", "mousedown", "1", "mousemove_relative", "20",
+                     "10", "mouseup", "1", "key", "F2"});
+    EXPECT_TRUE(running.wait_for(fmt::format("run {} tick", run), true)) << running.err();
+  }
+  floods = false;
+  flood.join();
+  running.signal(SIGINT);
+  const Ran ran = running.finish();
+  EXPECT_EQ(ran.code, 0) << ran.err;
+  EXPECT_EQ(ran.err.find("ThreadSanitizer"), std::string::npos) << ran.err;
+}
+
 TEST(Window, TheShowOutlivesTheDisplay) {
   Display display;
   const Folder folder;
@@ -150,6 +276,15 @@ TEST(Window, AFaultySceneLeavesAnEmptyStageThatWaits) {
   ASSERT_TRUE(running.wait_for("tick", true)) << running.err();
   running.signal(SIGINT);
   EXPECT_EQ(running.finish().code, 0);
+  // one of its files is mended while the window opens: nobody watches them yet
+  const std::string other = folder.file("other.lua", "require 'part'\n");
+  folder.file("scripts/lib/part.lua", "oh no\n");
+  Running second(limber(quiet(other), display.environment()));
+  ASSERT_TRUE(second.wait_for("OSC in off")) << second.err();
+  folder.file("scripts/lib/part.lua", kFallingBall);
+  ASSERT_TRUE(second.wait_for("tick", true)) << second.err();
+  second.signal(SIGINT);
+  EXPECT_EQ(second.finish().code, 0);
   const Ran headless =
       Running(limber(quiet(folder.file("bad.lua", "oh no\n"), {"--headless"}), display.environment())).finish();
   EXPECT_EQ(headless.code, 1) << headless.err;

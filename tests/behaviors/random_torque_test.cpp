@@ -17,12 +17,13 @@ TEST(RandomTorque, DrawsForEachPartAndScalesAtOnce) {
   s.set(b.id(), "max_torque", {1, 3, -5});
   s.act();
   Random random(1, "/physics/body/b/behavior/twist");
-  std::vector<Vec3> wanted;
-  for (int i = 0; i < 2; i++) {
+  const auto drawn = [&] {
     const double u = random.uniform();
     const double v = random.uniform();
-    wanted.push_back({u, 1 + 2 * v, -2 - 3 * random.uniform()});
-  }
+    return Vec3(u, 1 + 2 * v, -2 - 3 * random.uniform());
+  };
+  std::vector<Vec3> wanted = {drawn()};
+  wanted.push_back(drawn());
   expect_near(s.torque(one), wanted[0], 1e-12);
   expect_near(s.torque(two), wanted[1], 1e-12);
   s.set(b.id(), "scale", {-3});
@@ -30,6 +31,11 @@ TEST(RandomTorque, DrawsForEachPartAndScalesAtOnce) {
   s.act();
   expect_near(s.torque(one), -3.0 * wanted[0], 1e-12);
   expect_near(s.force(one), {0, 0, 0}, 0);
+  // once, too, for what is drawn while it is in force
+  s.set(b.id(), "rand_interval", {0});
+  for (Part* part : {&one, &two}) s.clear(*part);
+  s.act();
+  expect_near(s.torque(one), -3.0 * drawn(), 1e-12);
 }
 
 }  // namespace

@@ -101,6 +101,15 @@ TEST(EngineAllocation, NoneWithEveryTypeOfBehaviour) {
   EXPECT_EQ(during(show, 300), 0U);
 }
 
+// what the debug picture shows goes into snapshots that are there already
+TEST(EngineAllocation, NoneWithTheDebugPicture) {
+  const SceneFile scene(kEveryBehavior);
+  Show show(scene.path());
+  show.send("/visuals/look/overlay", 1);
+  EXPECT_EQ(during(show, 300), 0U);
+  EXPECT_GT(show.link.snapshots.read()->overlay.size(), 100U);
+}
+
 TEST(EngineAllocation, AValueComingInTakesNoneBeyondItsMessage) {
   Show show;
   build_bodies(show.engine.world());

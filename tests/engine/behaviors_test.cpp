@@ -87,6 +87,42 @@ TEST_F(Behaviors, Lists) {
   EXPECT_EQ(ask("/list/groups", "x"), (Texts{"/error /list/groups takes no arguments"}));
 }
 
+TEST_F(Behaviors, PlacesPutThemElsewhere) {
+  EXPECT_EQ(ask("/physics/body/arm2/behavior/push/place", 1), Texts{});
+  EXPECT_EQ(ask("/list/behaviors", "arm2"), (Texts{"/list/behaviors arm2 push wind swarm"}));
+  EXPECT_EQ(ask("/list/behaviors", "arm1"), (Texts{"/list/behaviors arm1 wind push swarm"}));
+  EXPECT_EQ(ask("/physics/body/*/behavior/push/place", 1), Texts{});
+  EXPECT_EQ(ask("/list/behaviors", "arm1"), (Texts{"/list/behaviors arm1 push wind swarm"}));
+  EXPECT_EQ(ask("/physics/group/swarm/place", 1), Texts{});
+  EXPECT_EQ(ask("/list/behaviors", "arm3"), (Texts{"/list/behaviors arm3 swarm push"}));
+  EXPECT_EQ(of("arm3/behavior/push/place"), 2);
+  EXPECT_EQ(
+      ask("/physics/body/arm1/behavior/swarm/place", 3),
+      (Texts{"/error /physics/body/arm1/behavior/swarm/place behavior 'arm1/swarm': it acts where its group does: "
+             "set /physics/group/swarm/place"}));
+  // a reset brings back what the scene says
+  EXPECT_EQ(ask("/transport/reset"), Texts{"/transport/state 0 0 0 1"});
+  EXPECT_EQ(ask("/list/behaviors", "arm2"), (Texts{"/list/behaviors arm2 wind push swarm"}));
+}
+
+TEST_F(Behaviors, AScriptPutsThemElsewhereUnlessItFails) {
+  const SceneFile scene(std::string(kScene) + R"(
+sim:body("arm1"):behavior("push").place = 1
+local tries = 0
+sim:on_step(function()
+  tries = tries + 1
+  if tries ~= 3 then return end
+  sim:body("arm2"):behavior("push").place = 1
+  error("on purpose")
+end)
+)");
+  Show own(scene.path());
+  own.ticks(4);
+  EXPECT_EQ(own.read("/physics/body/arm1/behavior/push/place"), 1);
+  EXPECT_EQ(own.read("/physics/body/arm1/behavior/wind/place"), 2);
+  EXPECT_EQ(own.read("/physics/body/arm2/behavior/push/place"), 2) << "the call failed";
+}
+
 TEST_F(Behaviors, RefusalsSayWhatExists) {
   const auto refused = [&](auto... args) {
     const Texts texts = ask("/physics/behavior/parameter", args...);
@@ -99,7 +135,7 @@ TEST_F(Behaviors, RefusalsSayWhatExists) {
   EXPECT_EQ(refused("wind", "maxampp", 1),
             "behavior 'arm2/wind' (random_force) has no parameter 'maxampp'; did you mean 'max_amp'?");
   EXPECT_EQ(refused("wind", "time", 1),
-            "behavior 'arm2/wind' (random_force) has no parameter 'time'; there are: active, "
+            "behavior 'arm2/wind' (random_force) has no parameter 'time'; there are: active, place, "
             "min_dir, max_dir, min_amp, max_amp, rand_interval, app_interval");
   EXPECT_EQ(refused("wind", "minDir", 1, 2), "takes 3 numbers, not 2");
   EXPECT_EQ(refused("wind", "active", "maybe"), "takes true or false, not 'maybe'");

@@ -21,7 +21,7 @@ struct Noted : ::testing::Test {
   }
   void set(std::size_t thing, const char* row, double value, double time) {
     notes.begin(hand, time);
-    notes.heard(store, things[thing], table.at(row));
+    notes.heard(things[thing], table.at(row), store.values(things[thing], table.at(row)));
     ASSERT_TRUE(store.set(things[thing], row, {&value, 1}).ok());
   }
   std::vector<std::string> lines(double since = 0) const {

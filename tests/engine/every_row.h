@@ -48,6 +48,7 @@ inline std::vector<double> other_value(const Row& row) {
   if (row.type == RowType::flags3) return {1, 0, 1};
   if (row.type == RowType::quat) return {0, 0, 0.6, 0.8};
   if (row.type == RowType::choice) return {row.max == row.initial[0] ? 0 : row.max};
+  if (row.name == "place") return {2};  // there are two
   if (row.type == RowType::integer) return {row.min + 3};
   std::vector<double> values;
   for (std::uint32_t i = 0; i < row.width; i++) {
@@ -91,6 +92,7 @@ inline std::string lua_numbers(const Row& row, const std::string& member) {
 }
 
 inline bool is_measure(const Row& row) {
+  if (row.name == "place") return false;  // no further than there are others
   return row.type == RowType::number || row.type == RowType::integer || row.type == RowType::vec3;
 }
 

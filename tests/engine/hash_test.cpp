@@ -8,10 +8,11 @@
 namespace limber::engine_test {
 namespace {
 
-// what can be set belongs to the state, but whether it is paused and how fast it is shown; readouts follow from it
+// what can be set belongs to the state, but whether it is paused, how fast and how it is shown; readouts follow from it
 bool is_part(const Table& table, const Row& row) {
   if (!row.stored() || !row.writable() || &table == &Transport::table() || &table == &CounterNode::table())
     return false;
+  if (&table == &Look::table() && row.name == "overlay") return false;
   return !(&table == &World::table() && (row.name == "paused" || row.name == "speed" || row.name == "history"));
 }
 

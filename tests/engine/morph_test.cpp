@@ -73,6 +73,17 @@ TEST(Morph, GoesItsWayInSimulatedTime) {
   }
 }
 
+TEST(Morph, WhatItMovesIsMovedInTheWorld) {
+  Edited edited(kMorphScene);
+  Show& show = edited.show();
+  store_far(show);
+  show.send("/preset/recall", "far", 1, "linear");
+  show.ticks(31);
+  EXPECT_NEAR(edited.part("one", "tip").rigid().getFriction(), 1.5, 1e-6);
+  show.ticks(40);
+  EXPECT_EQ(edited.part("one", "tip").rigid().getFriction(), 2.5);
+}
+
 TEST(Morph, StandsStillWithTime) {
   Edited edited(kMorphScene);
   Show& show = edited.show();

@@ -90,5 +90,38 @@ TEST_F(PresetTakerTest, HalfReadyIsFinishedAtOnce) {
   EXPECT_TRUE(taker.ready(rig.store));
 }
 
+// what stands as it stood is not looked at again: whatever came, went or moved beside it
+TEST_F(PresetTakerTest, KeepsWhatStandsAsItStood) {
+  PresetTaker taker;
+  add_bodies(20);
+  taker.make_ready(rig.store);
+  const auto expect_fresh = [&](const char* what) {
+    EXPECT_FALSE(taker.ready(rig.store)) << what;
+    SCOPED_TRACE(what);
+    expect_same(**taker.take(rig.store, "all", {}), *fresh());
+    EXPECT_TRUE(taker.ready(rig.store)) << what;
+  };
+  add_bodies(1);
+  expect_fresh("one came");
+  rig.world.remove_body(*rig.world.find_body("more0"));
+  expect_fresh("the first went");
+  rig.world.remove_body(*rig.world.find_body("more20"));
+  rig.world.remove_body(*rig.world.find_body("more7"));
+  add_bodies(2);
+  expect_fresh("others in the same slots");
+  const NodeId body = rig.world.find_body("more9")->id();
+  const std::size_t place = rig.store.hide(body);
+  expect_fresh("one hides");
+  rig.store.show(body, place);
+  expect_fresh("it is back");
+  const NodeId first[] = {rig.world.find_body("more15")->id(), body};
+  rig.store.order_children(rig.store.parent(body), first);
+  expect_fresh("another order");
+  rig.store.note_structure();
+  expect_fresh("no node at all");
+  const PresetChoice part{{"/physics/body/more1*//*"}, {}, false, false};
+  expect_same(**taker.take(rig.store, "some", part), *fresh(part));
+}
+
 }  // namespace
 }  // namespace limber::engine_test

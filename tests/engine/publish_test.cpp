@@ -92,6 +92,24 @@ TEST(Publisher, AHeldSnapshotIsNotWrittenAgain) {
   EXPECT_EQ(latest.read()->tick, 10U);
 }
 
+TEST(Publisher, TheDebugPictureIsTakenWhileItIsOn) {
+  const SceneFile scene(R"(
+sim:add_body("ball"):add_part("ball", sim:add_sphere_shape("ball", 0.1), { mass = 1 })
+)");
+  Show show(scene.path());
+  const auto marks = [&] {
+    show.ticks(1);
+    return show.link.snapshots.read()->overlay.size();
+  };
+  EXPECT_EQ(marks(), 0U);
+  show.send("/visuals/look/overlay", 1);
+  EXPECT_GT(marks(), 0U);
+  show.send("/transport/reset");
+  EXPECT_GT(marks(), 0U) << "it belongs to who looks, not to the scene";
+  show.send("/visuals/look/overlay", 0);
+  EXPECT_EQ(marks(), 0U);
+}
+
 TEST(Publisher, ASwitchedOffBodyIsMarked) {
   Rig rig;
   Latest<Snapshot> latest;

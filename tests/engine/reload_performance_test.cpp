@@ -1,7 +1,9 @@
 // Things of the performance: made in callbacks, removed by hand, taken over by the scene; and models that change on
 // disk.
 #include <cmath>
+#include <map>
 
+#include "base/random.h"
 #include "engine/edited.h"
 
 namespace limber::engine_test {
@@ -204,6 +206,47 @@ TEST(ReloadModels, FilesThatTheRunDependsOnAreTold) {
   edited.folder.write("scripts/lib/other.lua", "");
   EXPECT_EQ(edited.show().engine.reload_now(), Reload::End::applied);
   EXPECT_FALSE(has("scripts/lib/dance.lua"));
+}
+
+// somebody may save before the files are watched: what was read is compared with the disk then
+TEST(ReloadModels, WhatFilesHeldWhenTheyWereReadIsTold) {
+  const ShowFolder folder;
+  const auto write = [&](const std::string& name, const std::string& text) {
+    folder.write(name, text);
+    return std::pair(folder.path(name), hash_bytes(text));
+  };
+  const std::string mesh = R"(<link name="shell"><visual><geometry><mesh filename="jib.stl"/></geometry></visual></link>
+<joint name="fix" type="fixed"><parent link="jib"/><child link="shell"/></joint>)";
+  std::map<std::string, std::uint64_t> read = {
+      write("scripts/lib/dance.lua", "return 1"), write("urdf/crane.urdf", crane("1", "2", mesh.c_str())),
+      write("urdf/jib.stl",
+            "solid s\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\nendloop\n"
+            "endfacet\nendsolid s\n")};
+  const auto told = [&](const Engine& engine) {
+    std::map<std::string, std::uint64_t> all;
+    for (const SourceFile& file : engine.files()) {
+      if (file.content) all[file.path] = *file.content;
+    }
+    return all;
+  };
+  const std::string scene = R"(
+params { { "count", 1, min = 0, max = 9, rerun = true } }
+require 'dance'
+sim:load_urdf('urdf/crane.urdf')
+)";
+  read.insert(write("scripts/scene.lua", scene));
+  Show show(folder.path("scripts/scene.lua"));
+  EXPECT_EQ(told(show.engine), read);
+  show.send("/scene/count", 2.0);
+  show.ticks(2);
+  EXPECT_EQ(told(show.engine), read) << "after a run without the disk";
+  // the first run fails, in a file that it takes
+  read[folder.path("scripts/scene.lua")] = write("scripts/scene.lua", scene + "require 'broken'").second;
+  read.insert(write("scripts/lib/broken.lua", "oh no"));
+  EngineLink link;
+  Engine engine(link, fast_options(folder.path("scripts/scene.lua")));
+  EXPECT_FALSE(engine.start().ok());
+  EXPECT_EQ(told(engine), read);
 }
 
 }  // namespace

@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <fstream>
 #include <string>
+#include <thread>
 #include <vector>
 
 #include "base/text.h"
@@ -92,5 +93,31 @@ struct Show {
     return texts;
   }
 };
+
+/// Work of another thread that needs ticks to go on; their number is nobody's to say.
+template <class Work>
+void beside(Show& show, Work work) {
+  std::atomic<bool> done{false};
+  std::thread thread([&] {
+    work();
+    done.store(true);
+  });
+  while (!done.load()) show.ticks(1);
+  thread.join();
+}
+
+/// Engine::play_take() beside the show, with no tick more than it needs: a take may be short.
+inline Result<void> begin_take(Show& show, const std::string& take) {
+  Result<void> played;
+  std::atomic<bool> done{false};
+  std::thread thread([&] {
+    played = show.engine.play_take(take);
+    done = true;
+  });
+  const bool another = show.read("/take/plays") != 0;
+  while (!done && (another || show.read("/take/plays") == 0)) show.ticks(1);
+  thread.join();
+  return played;
+}
 
 }  // namespace limber::engine_test

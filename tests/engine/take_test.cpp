@@ -109,6 +109,38 @@ TEST(Take, BeginsInTheMiddleOfAShowWithAReset) {
   EXPECT_EQ(again.hash, hash);
 }
 
+// a hand's step must not hold what a stopped call had set: a replay does not make that call
+TEST(Take, WhatAStoppedCallHadSetIsNoStepOfItsHand) {
+  const ShowFolder folder;
+  lay_out(folder);
+  folder.write("scripts/scene.lua", std::string(kTakenScene) + R"(
+sim:on_step(function() if sim.tick == 20 then sim.gravity = vec3(0, 0, -8) end end)
+)");
+  EngineOptions options = taken_options(folder);
+  options.record = folder.path("undo.take");
+  std::uint64_t hash = 0;
+  {
+    log_to_stderr(false);
+    Show show(options);
+    show.ticks(5);
+    show.send("/physics/motor/damping", "arm1", 0.125);
+    show.send("/loop", -3.0);
+    show.ticks(30);
+    EXPECT_EQ(show.read("/physics/sim/gravity", 2), -8);
+    show.send("/edit/undo");
+    show.ticks(1);
+    EXPECT_NE(show.read("/physics/body/arm1/motor/joint_1/damping"), 0.125);
+    EXPECT_EQ(show.read("/physics/sim/gravity", 2), -8) << "the call that set it was taken back";
+    show.engine.end_take();
+    hash = show.engine.state_hash();
+    show.engine.finish_saving();
+  }
+  const Replayed again = replay_take(options.record);
+  ASSERT_EQ(again.error, "");
+  EXPECT_FALSE(again.verdict.parted.has_value()) << text_of(again.verdict);
+  EXPECT_EQ(again.hash, hash);
+}
+
 TEST(Take, CutAtAnyByteItPlaysToItsLastWholeTick) {
   const SmallTake small(12);
   const std::string whole = take_bytes(small.take);

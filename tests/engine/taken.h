@@ -2,8 +2,6 @@
 // recorded by a seed; and its replay.
 #pragma once
 
-#include <thread>
-
 #include "base/random.h"
 #include "engine/edited.h"
 
@@ -83,18 +81,6 @@ inline EngineOptions taken_options(const ShowFolder& folder) {
   return options;
 }
 
-/// Work of another thread that needs ticks to go on; their number is nobody's to say.
-template <class Work>
-void beside(Show& show, Work work) {
-  std::atomic<bool> done{false};
-  std::thread thread([&] {
-    work();
-    done.store(true);
-  });
-  while (!done.load()) show.ticks(1);
-  thread.join();
-}
-
 /// A line of a console.
 inline void evaluate(Show& show, const std::string& text) {
   auto wish = std::make_shared<Evaluate>();
@@ -136,6 +122,7 @@ inline void play_wildly(Show& show, const ShowFolder& folder, int ticks, std::ui
     if (some(90) == 0) show.send("/transport/reset");
     if (some(60) == 0) show.send("/transport/step", 3);
     if (some(30) == 0) show.send("/transport/play");
+    if (i % 40 == 9) show.send("/physics/body/arm1/behavior/again/place", 1 + i % 3);
     if (i % 50 == 17) show.send("/loop", i);
     if (i % 60 == 31) {
       folder.write("scripts/lib/tool.lua",

@@ -53,6 +53,75 @@ TEST(Gui, HelpAndNoticesLieOverThePanels) {
   EXPECT_EQ(drawn_last(), "##notice");
 }
 
+TEST(Gui, TheWholeHelpIsSeenInASmallWindow) {
+  for (const auto& [width, height] : {std::pair(800.0, 450.0), {1600.0, 900.0}}) {
+    PanelRig rig(kScene, width, height);
+    rig.key(GuiKey::f2);
+    rig.frames(3);
+    const PanelRect first = rig.where("help:" + std::string(hotkeys().front().shown));
+    const PanelRect last = rig.where("help:Tab, arrows, Enter");
+    EXPECT_GT(last.y, first.y);
+    EXPECT_LT(last.y + last.height, height - 8) << width;
+    EXPECT_GE(last.height, 11) << "and can be read";
+  }
+}
+
+TEST(Gui, F3ShowsTheDebugPicture) {
+  PanelRig rig;
+  rig.key(GuiKey::f3);
+  EXPECT_EQ(rig.read("/visuals/look/overlay"), 1);
+  rig.key(GuiKey::f3);
+  EXPECT_EQ(rig.read("/visuals/look/overlay"), 0);
+}
+
+TEST(Gui, NineViewsAreKeptAndTakenAgain) {
+  PanelRig rig;
+  constexpr KeyMods kCtrl{true, false, false};
+  constexpr KeyMods kCtrlShift{true, true, false};
+  const auto look = [&](double x) {
+    for (const char* row : {"/visuals/camera/eye", "/visuals/camera/target", "/visuals/camera/eye"})
+      rig.show.send(row, x, std::string_view(row).ends_with("eye") ? -5.0 : 1.0, 2.0);
+    rig.heard();
+  };
+  look(3);
+  rig.key(GuiKey::digit_1, kCtrlShift);
+  look(7);
+  rig.key(GuiKey::digit_9, kCtrlShift);
+  look(11);
+  rig.key(GuiKey::digit_5, kCtrl);
+  EXPECT_NEAR(rig.read("/visuals/camera/eye"), 11, 1e-6) << "there is none";
+  EXPECT_NE(rig.gui->desk().notice.find("there is no view 5"), std::string::npos) << rig.gui->desk().notice;
+  for (const auto& [key, x] : {std::pair(GuiKey::digit_1, 3.0), {GuiKey::digit_9, 7.0}}) {
+    rig.key(key, kCtrl);
+    EXPECT_NEAR(rig.read("/visuals/camera/eye", 0), x, 1e-6);
+    EXPECT_NEAR(rig.read("/visuals/camera/eye", 1), -5, 1e-6);
+    EXPECT_NEAR(rig.read("/visuals/camera/target", 0), x, 1e-6);
+    EXPECT_NEAR(rig.read("/visuals/camera/target", 1), 1, 1e-6);
+  }
+  EXPECT_EQ(rig.gui->take_actions().back(), HotkeyAction::go_to_view) << "what is followed is followed no more";
+}
+
+TEST(Gui, TheChosenStyleIsRememberedUnlessTheSceneHasItsOwn) {
+  PanelRig rig;
+  rig.click("parameters.search");
+  rig.type("look style");
+  rig.click("/visuals/look/style");
+  rig.click("/visuals/look/style=studio");
+  EXPECT_EQ(rig.read("/visuals/look/style"), 1);
+  const PanelSettings settings = rig.gui->settings();
+  EXPECT_EQ(settings.style, "studio");
+  for (const auto& [scene, style] :
+       {std::pair(std::string(kScene), 1.0), {std::string(kScene) + "visuals.look.style = \"stage\"\n", 0.0}}) {
+    PanelRig next(scene);
+    GuiOptions options = PanelRig::headless();
+    options.settings = settings;
+    next.gui = std::make_unique<Gui>(next.show.link, std::move(options));
+    next.heard();
+    next.heard();
+    EXPECT_EQ(next.read("/visuals/look/style"), style);
+  }
+}
+
 TEST(Gui, TextGrowsFrom12To28) {
   PanelRig rig;
   constexpr KeyMods kCtrl{true, false, false};
@@ -117,6 +186,34 @@ TEST(Gui, AWindowOfOnePixelIsAWindow) {
   EXPECT_TRUE(rig.gui->names().all().empty());
   rig.resize(1600, 900);
   EXPECT_TRUE(rig.sees("transport.play"));
+}
+
+// a frame's corner stands for all letters that the two lack: JetBrains Mono has it, but it is not taken of that
+TEST(Gui, LettersOfNamesComeFromAThirdFont) {
+  const std::string scene = std::string(kScene) + "sim:add_body('\u250crm \u8155')\n";
+  PanelRig rig(scene);
+  const std::filesystem::path root = rig.folder() / "fonts_of_a_test";
+  const std::filesystem::path droid = root / "usr/share/fonts/truetype/droid";
+  std::filesystem::create_directories(droid);
+  std::filesystem::copy_file("/usr/share/fonts/truetype/jetbrains-mono/JetBrainsMono-Regular.ttf",
+                             droid / "DroidSansFallbackFull.ttf");
+  GuiOptions options = PanelRig::headless();
+  options.font_root = root.string();
+  rig.gui = std::make_unique<Gui>(rig.show.link, std::move(options));
+  rig.heard();
+  rig.frames(2);
+  for (const ImFont* font : {rig.gui->desk().fonts.words, rig.gui->desk().fonts.code}) {
+    EXPECT_NE(font->FindGlyphNoFallback(0x250c), nullptr);
+    EXPECT_EQ(font->FindGlyphNoFallback(0x2510), nullptr) << "what no name has is not taken";
+  }
+  std::filesystem::remove_all(root);
+  const std::uint64_t said = log_count(LogLevel::warning);
+  GuiOptions none = PanelRig::headless();
+  none.font_root = "/nowhere";
+  rig.gui = std::make_unique<Gui>(rig.show.link, std::move(none));
+  rig.heard();
+  rig.frames(2);
+  EXPECT_EQ(log_count(LogLevel::warning), said + 3) << "two fonts are missing, and one for these letters";
 }
 
 TEST(Gui, WhatFontsAreMissingIsSaid) {

@@ -12,6 +12,18 @@ TEST(PanelErrors, PlacesAreRead) {
   EXPECT_EQ(fault_of({1, LogLevel::error, "x.lua: no line"}).place, "");
 }
 
+TEST(PanelErrors, TheCountSaysWhatIsAWarning) {
+  FaultList list;
+  EXPECT_EQ(list.count_text(), "");
+  list.hear({1, LogLevel::warning, "one"});
+  EXPECT_EQ(list.count_text(), "1 warning");
+  list.hear({2, LogLevel::warning, "two"});
+  EXPECT_EQ(list.count_text(), "2 warnings");
+  FaultList errors;
+  errors.hear({1, LogLevel::error, "one"});
+  EXPECT_EQ(errors.count_text(), "1");
+}
+
 TEST(PanelErrors, VanishWhenTheirFileIsMended) {
   FaultList list;
   list.hear({1, LogLevel::error, "a.lua:1: one"});
@@ -21,6 +33,7 @@ TEST(PanelErrors, VanishWhenTheirFileIsMended) {
   ASSERT_EQ(list.faults().size(), 2u);
   EXPECT_EQ(list.faults()[0].file, "b.lua");
   EXPECT_EQ(list.errors(), 1u) << "a warning is no error";
+  EXPECT_EQ(list.count_text(), "1 + 1 warning");
   for (int i = 0; i < 2000; i++) list.hear({5, LogLevel::error, "c.lua:1: again"});
   EXPECT_EQ(list.faults().size(), FaultList::kMost);
 }

@@ -9,6 +9,7 @@ namespace limber::gui_test {
 namespace {
 
 constexpr KeyMods kHeldCtrl{true, false, false};
+constexpr KeyMods kHeldCtrlShift{true, true, false};
 
 std::vector<std::string> takes_in(const std::filesystem::path& folder) {
   std::vector<std::string> files;
@@ -94,6 +95,31 @@ TEST(PanelTime, AReplayShowsWhereItIsAndThatHandsAreRefused) {
   EXPECT_FALSE(rig.sees("transport.past")) << "there is no way back in a replay";
   EXPECT_NE(rig.gui->desk().refusal.find("a take is replayed"), std::string::npos) << rig.gui->desk().refusal;
   EXPECT_TRUE(rig.sees("refusal"));
+}
+
+TEST(PanelTime, TheNewestTakePlaysByAButtonAndAKey) {
+  PanelRig rig;
+  std::vector<std::string> asked;
+  rig.show.link.ask_scenes = [&](const Message& wish, const Origin&) { asked.push_back(wish.address); };
+  rig.click("take.play");
+  EXPECT_EQ(asked, (std::vector<std::string>{"/take/play"}));
+  rig.key(GuiKey::r, kHeldCtrlShift);
+  EXPECT_EQ(asked.size(), 2u);
+  rig.click("transport.record");
+  rig.show.ticks(40);
+  rig.heard();
+  EXPECT_FALSE(rig.sees("take.play")) << "one take at a time";
+  rig.click("transport.record");
+  rig.show.engine.finish_saving();
+  ASSERT_EQ(takes_in(rig.folder()).size(), 1u);
+  ASSERT_TRUE(engine_test::begin_take(rig.show, takes_in(rig.folder())[0]).ok());
+  rig.heard();
+  EXPECT_TRUE(rig.gui->desk().take().plays);
+  rig.click("take.stop");
+  rig.heard();
+  EXPECT_FALSE(rig.gui->desk().take().plays);
+  EXPECT_TRUE(rig.sees("take.play"));
+  EXPECT_NE(rig.gui->desk().notice.find("is over: the show is yours"), std::string::npos) << rig.gui->desk().notice;
 }
 
 }  // namespace

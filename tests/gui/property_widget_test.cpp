@@ -1,6 +1,10 @@
 // Each kind of row as a widget: what a hand does is read back from the world.
 #include "gui/property_widget.h"
 
+#include <algorithm>
+#include <cmath>
+#include <set>
+
 #include "gui/number_bar.h"
 #include "gui/rig.h"
 #include "params/table.h"
@@ -18,6 +22,40 @@ TEST(PropertyWidget, ADraggedBarSetsTheWorld) {
   EXPECT_EQ(rig.read("/scene/rate"), 2) << "beyond its end: the end";
   rig.drag("/scene/rate", -2);
   EXPECT_EQ(rig.read("/scene/rate"), 0);
+}
+
+// of every class that the scene has: found by its address, dragged, read back, undone
+TEST(PropertyWidget, EveryBarSetsItsRowAndUndoTakesItBack) {
+  PanelRig rig;
+  std::set<const Table*> classes;
+  std::size_t bars = 0;
+  const std::shared_ptr<const Tree> tree = rig.gui->desk().image->tree;
+  // from the end: the first part is static, and has no mass
+  for (auto node = static_cast<std::uint32_t>(tree->nodes().size()); --node > 0;) {
+    const Table& table = *tree->nodes()[node].table;
+    if (!classes.insert(&table).second) continue;
+    for (const Row& row : table.rows()) {
+      const bool bar = row.kind == RowKind::property &&
+                       (row.type == RowType::number || row.type == RowType::integer || row.type == RowType::vec3);
+      if (!bar) continue;
+      const std::string path = tree->path({node, &row});
+      SCOPED_TRACE(path);
+      rig.key(GuiKey::f, {true, false, false});
+      rig.key(GuiKey::a, {true, false, false});
+      rig.type(path);
+      const std::string name = row.width > 1 ? path + "/0" : path;
+      ASSERT_TRUE(rig.sees(name));
+      const double before = rig.read(path);
+      const BarRange range{row.low(0), row.high(0), row.initial[0], row.step, row.type == RowType::integer};
+      const double to = range.bounded() && range.place_of(before) > 0.6 ? 0.3 : 0.8;
+      rig.drag(name, to);
+      EXPECT_NE(rig.read(path), before) << "the hand's value";
+      rig.key(GuiKey::z, {true, false, false});
+      EXPECT_NEAR(rig.read(path), before, 1e-9 * std::max(1.0, std::abs(before)));
+      bars++;
+    }
+  }
+  EXPECT_GE(bars, 60u);
 }
 
 TEST(PropertyWidget, OneNumberOfThreeIsItsOwn) {

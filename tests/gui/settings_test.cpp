@@ -21,6 +21,7 @@ PanelSettings own_settings() {
   settings.morph_seconds = 0.25;
   settings.easing = 2;
   settings.favourites = {"/physics/sim/gravity", "/scene/größe"};
+  settings.style = "studio";
   settings.window_width = 1500;
   settings.window_height = 800;
   return settings;

@@ -116,5 +116,14 @@ TEST(Mix, TurnsInDegreesAreRotationsToo) {
   EXPECT_EQ(mixed(row, {-80, 0, 530}, {-80, 0, -170}, 0), (Values{-80, 0, 530}));
 }
 
+TEST(Mix, WhatLiesBetweenIsAValueOfTheRow) {
+  const Row whole = row_of(rows::integer("n", 0, 0, 9, "A whole number."));
+  EXPECT_EQ(mixed(whole, {0}, {9}, 0.3)[0], 3);
+  EXPECT_EQ(mixed(whole, {9}, {0}, 0.3)[0], 6);
+  // from 170 to -170 degrees about z the arc goes by 180, which this row does not take
+  const Row narrow = row_of(rows::turns(rows::vec3("r", "deg", {}, -175, 175, "A turn.")));
+  EXPECT_EQ(std::abs(mixed(narrow, {0, 0, 170}, {0, 0, -170}, 0.4)[2]), 175);
+}
+
 }  // namespace
 }  // namespace limber

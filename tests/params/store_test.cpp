@@ -84,14 +84,12 @@ TEST_F(StoreTest, ARotationThatWasReadCanBeSetAgainToTheBit) {
   }
 }
 
-TEST_F(StoreTest, WhoListensHearsOfEachRowBeforeItIsWritten) {
+TEST_F(StoreTest, WhoListensHearsOfEachRowAndWhatItWas) {
   struct Ear {
-    const Store& store;
     std::vector<std::string> heard;
-  } ear{store, {}};
-  const auto hear = [](void* who, NodeId node, const Row& row, bool later) {
-    Ear& of = *static_cast<Ear*>(who);
-    of.heard.push_back(fmt::format("{} {}{}", row.name, of.store.values(node, row)[0], later ? " later" : ""));
+  } ear;
+  const auto hear = [](void* who, NodeId, const Row& row, bool later, const double* was) {
+    static_cast<Ear*>(who)->heard.push_back(fmt::format("{} {}{}", row.name, was[0], later ? " later" : ""));
   };
   const Store::Listener before = store.listen({hear, &ear});
   EXPECT_EQ(before.heard, nullptr);
@@ -103,6 +101,29 @@ TEST_F(StoreTest, WhoListensHearsOfEachRowBeforeItIsWritten) {
   EXPECT_EQ(store.listen(before).who, &ear);
   EXPECT_TRUE(set(store, id, "mass", {3}));
   EXPECT_EQ(ear.heard, (std::vector<std::string>{"mass 1", "mass 2", "position 0", "mass 2 later"}));
+}
+
+TEST_F(StoreTest, WhatACallSetsIsHeardOnceItHasEndedWell) {
+  std::vector<std::string> heard;
+  const auto hear = [](void* who, NodeId, const Row& row, bool, const double* was) {
+    static_cast<std::vector<std::string>*>(who)->push_back(fmt::format("{} {}", row.name, was[0]));
+  };
+  store.listen({hear, &heard});
+  store.begin_undo();
+  EXPECT_TRUE(set(store, id, "mass", {2}));
+  store.take_back();
+  EXPECT_TRUE(heard.empty()) << "it never was";
+  store.begin_undo();
+  EXPECT_TRUE(set(store, id, "mass", {2}));
+  EXPECT_TRUE(set(store, id, "position", {1, 2, 3}));
+  EXPECT_TRUE(set(store, id, "mass", {3}));
+  EXPECT_TRUE(heard.empty());
+  store.end_undo();
+  EXPECT_EQ(heard, (std::vector<std::string>{"mass 1", "position 0"})) << "once, with what it was before the call";
+  store.begin_undo();
+  EXPECT_TRUE(set(store, id, "mass", {4}));
+  store.end_undo();
+  EXPECT_EQ(heard.back(), "mass 3");
 }
 
 TEST_F(StoreTest, TellsWhenANodeCame) {
@@ -173,6 +194,77 @@ TEST_F(StoreTest, AnEffectHappensOnceBeforeTheNextStep) {
   store.apply_marks();
   EXPECT_EQ(toy.pose_effects, 2);
   EXPECT_EQ(toy.mass_effects, 2);
+}
+
+TEST_F(StoreTest, WhatGoesOnIsWrittenAndToldAndItsEffectsAreTheCallers) {
+  store.apply_marks();
+  std::vector<std::string> heard;
+  const auto hear = [](void* who, NodeId, const Row& row, bool, const double* was) {
+    static_cast<std::vector<std::string>*>(who)->push_back(fmt::format("{} {}", row.name, was[0]));
+  };
+  store.listen({hear, &heard});
+  const Row& mass = Toy::table().at("mass");
+  const Row& density = Toy::table().at("density");
+  const double values[] = {4, 7};
+  const std::uint64_t version = store.kept_version();
+  store.go_on(id, mass, &values[0]);
+  store.go_on(id, density, &values[1]);
+  EXPECT_EQ(read(store, id, "mass"), Numbers{4});
+  EXPECT_EQ(read(store, id, "density"), Numbers{7});
+  EXPECT_GT(store.kept_version(), version);
+  EXPECT_EQ(heard, (std::vector<std::string>{"mass 1", "density 2"}));
+  EXPECT_FALSE(store.marked(id, mass));
+  store.apply_marks();
+  EXPECT_EQ(toy.mass_effects, 1) << "of the beginning";
+  const std::uint64_t count = Toy::table().at("count").index;
+  store.run_effects(id, std::uint64_t{1} << mass.index | std::uint64_t{1} << density.index | std::uint64_t{1} << count);
+  EXPECT_EQ(toy.mass_effects, 2) << "one for both, and none of a row without";
+  EXPECT_EQ(toy.pose_effects, 1);
+}
+
+TEST_F(StoreTest, TellsWhatItWouldTakeAndDoesNotTakeIt) {
+  Numbers taken(4);
+  const auto outcome = store.take(id, Toy::table().at("mass"), Numbers{11}, taken.data());
+  ASSERT_TRUE(outcome);
+  EXPECT_TRUE(outcome->clamped);
+  EXPECT_EQ(taken[0], 10);
+  toy.holds_mass = true;
+  const auto refused = store.take(id, Toy::table().at("mass"), Numbers{6}, taken.data());
+  ASSERT_FALSE(refused);
+  EXPECT_EQ(refused.error(), set(store, id, "mass", {6}).error());
+  EXPECT_EQ(read(store, id, "mass"), Numbers{1});
+}
+
+TEST_F(StoreTest, KnowsBelowWhichNodesSomethingChanged) {
+  const NodeId other = store.add_group(store.root(), "other");
+  const NodeId below = store.add_group(other, "below");
+  std::uint64_t then = 0;
+  // those of the four below which something changed since
+  const auto changed = [&] {
+    std::string names;
+    for (const NodeId node : {store.root(), toys, id, other})
+      names += store.changed(node) > then ? store.path(node) + " " : "";
+    then = store.structure_version();
+    return names;
+  };
+  (void)changed();
+  EXPECT_EQ(changed(), "");
+  const NodeId came = add("came");
+  EXPECT_EQ(changed(), "/ /toys ");
+  const std::size_t place = store.hide(came);
+  EXPECT_EQ(changed(), "/ /toys ");
+  store.show(came, place);
+  EXPECT_EQ(store.changed(came), store.structure_version()) << "it was not there meanwhile";
+  EXPECT_EQ(changed(), "/ /toys ");
+  const NodeId children[] = {came, id};
+  store.order_children(toys, children);
+  EXPECT_EQ(changed(), "/ /toys ");
+  store.remove(came);
+  EXPECT_EQ(changed(), "/ /toys ");
+  store.retable(below, Toy::table(), &toy);
+  EXPECT_EQ(changed(), "/ /other ");
+  ASSERT_TRUE(set(store, id, "mass", {2}));
+  EXPECT_EQ(changed(), "") << "a value is no structure";
 }
 
 TEST_F(StoreTest, AnEffectThatMarksItselfDoesNotGoOnForEver) {

@@ -300,7 +300,11 @@ TEST(QueryServer, StopsWithClientsAndStartsAgain) {
     listening.listen("/scene/wind");
     listening.until_pong("x");
     WebClient waiting(server.port());
+    const std::uint64_t asked = link.image_asks;
     waiting.send("GET /scene HTTP/1.1\r\nHost: localhost\r\n\r\n");
+    const auto late = std::chrono::steady_clock::now() + std::chrono::milliseconds(kPatienceMs);
+    while (link.image_asks == asked && std::chrono::steady_clock::now() < late) std::this_thread::yield();
+    ASSERT_NE(link.image_asks, asked);  // it waits for an image now
     server.stop();
     EXPECT_TRUE(listening.ends());
     EXPECT_TRUE(idle.ends());

@@ -108,7 +108,7 @@ TEST(LuaBehaviors, AGroupWritesToEveryMember) {
             "scripts/scene.lua:7: there is no body 'amr'; did you mean 'arm'?");
   EXPECT_EQ(error("sim:add_group_behavior('cohesion', 'swarm', { joints = 'all' })"),
             "scripts/scene.lua:7: add_group_behavior: opts has no 'joints'; there are: bodies, neighbor_parts, parts, "
-            "active, amount, max_dist, min_dist");
+            "active, amount, max_dist, min_dist, place");
 }
 
 TEST(LuaBehaviors, ARemovedOneIsGone) {

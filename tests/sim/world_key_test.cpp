@@ -56,8 +56,24 @@ void heap(Played& s, int count) {
   for (int i = 0; i < 3; i++) {
     Body& arm = make_arm(s, "arm" + std::to_string(i), {4, {0.3 * i - 0.3, 0.6, 0.1}, i != 2});
     s.set(arm.parts().back()->id(), "report_contacts", {1});
-    s.hands.push_back([&s, &arm](std::uint64_t tick) { wave(s, arm, static_cast<double>(tick) / 60); });
+    s.hands.emplace_back([&s, &arm](std::uint64_t tick) { wave(s, arm, static_cast<double>(tick) / 60); });
   }
+}
+
+// what the direct solver remembers of joints from step to step comes back with them
+TEST(WorldKey, JointsSolvedDirectlyComeBackToTheBit) {
+  Played s;
+  s.set(s.world.id(), "solver", {1});
+  heap(s, 6);
+  s.play(40);
+  PageStore pages;
+  KeyBytes scratch;
+  WorldKey key;
+  key.take(s.world, pages, nullptr, scratch);
+  const std::vector<std::uint64_t> first = s.hashes(60);
+  key.bring_back(s.world, pages, scratch);
+  EXPECT_EQ(s.hashes(60), first);
+  key.release(pages);
 }
 
 TEST(WorldKey, ContactsOfAHeapComeBackToTheBit) {
@@ -84,8 +100,9 @@ TEST(WorldKey, BodiesThatAreSwitchedComeBack) {
   heap(s, 25);
   Random random(3, "switches");
   std::vector<std::pair<std::size_t, double>> switches;
+  switches.reserve(400);
   for (int i = 0; i < 400; i++) switches.emplace_back(random.next() % s.world.bodies().size(), random.uniform());
-  s.hands.push_back([&](std::uint64_t tick) {
+  s.hands.emplace_back([&](std::uint64_t tick) {
     const auto [body, chance] = switches[tick];
     if (chance < 0.3) s.set(s.world.bodies()[body]->id(), "enabled", {chance < 0.15 ? 0. : 1.});
     if (chance > 0.95) s.world.bodies()[body]->reset();
@@ -126,6 +143,9 @@ TEST(WorldKey, WaitingForcesAndMarksAreOfIt) {
   key.bring_back(s.world, pages, scratch);
   EXPECT_EQ(s.hashes(5), first);
   EXPECT_EQ(other.linear_velocity(), Vec3(0)) << "what waited for it when the key came back is gone";
+  other.apply_impulse({0, 1, 0});
+  s.play(1);
+  EXPECT_EQ(other.linear_velocity(), Vec3(0, 1, 0)) << "also when something waits again";
 }
 
 // generator, beats, faults; and members of groups are stepped as they were
@@ -135,7 +155,7 @@ TEST(WorldKey, BehaviorsGoOnFromWhereTheyWere) {
   s.chain("b", {"p", "q"});
   Probe& probe = s.probe(a);
   s.group("all");
-  s.hands.push_back([&](std::uint64_t tick) {
+  s.hands.emplace_back([&](std::uint64_t tick) {
     s.set(probe.id(), "broken", {tick % 40 == 20 ? 1. : 0.});
     if (tick % 40 == 30) s.set(probe.id(), "active", {1});
   });

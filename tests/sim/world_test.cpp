@@ -186,5 +186,46 @@ TEST(WorldTest, ReadoutsOfAJointAreRightHandedAndInTheWorld) {
   EXPECT_NEAR(q[3], std::cos(0.3), 1e-6);
 }
 
+// A joint between two bodies of which one can't turn about any axis is nothing that the trees can say.
+TEST(WorldTest, CountsStepsOfIslandsThatTheDirectSolverLeaves) {
+  Stage s;
+  s.set(s.world.id(), "solver", {1});
+  Body& robot = s.body("robot");
+  Part& a = s.part(robot, box_model(Vec3(0.2)), 1);
+  Part& b = s.part(robot, box_model(Vec3(0.2)), 1, {{0.3, 0, 0}, quat_identity()});
+  (void)robot.add_joint("hinge", a, b, JointType::revolute, {0.15, 0, 0}, {0, 1, 0}).value();
+  s.ticks(2);
+  EXPECT_EQ(s.number(s.world.id(), "solver_fallbacks"), 0);
+  b.rigid().setAngularFactor(btVector3(0, 0, 0));
+  s.ticks(2);
+  EXPECT_EQ(s.number(s.world.id(), "solver_fallbacks"), 8);  // 2 ticks of 4 steps
+}
+
+// A joint turned to where two of its axes are one is left to the sweeps, and all that moves with it in that step.
+TEST(WorldTest, ASingularJointAmongOthersIsSweptAsWithoutTheDirectSolver) {
+  std::vector<Vec3> swept;
+  for (const double solver : {0.0, 1.0}) {
+    Stage s;
+    s.set(s.world.id(), "solver", {solver});
+    s.set(s.world.id(), "substeps", {1});
+    Body& robot = s.body("robot");
+    Part& a = s.part(robot, box_model(Vec3(0.2)), 1);
+    Part& b = s.part(robot, box_model(Vec3(0.2)), 1, {{0.3, 0, 0}, quat_identity()});
+    (void)robot.add_joint("weld", a, b, JointType::fixed, {0.15, 0, 0}, {0, 1, 0}).value();
+    Body& other = s.body("other");
+    Part& c = s.part(other, box_model(Vec3(0.2)), 1, {{0, 0, 0.19}, quat_identity()});
+    Part& d = s.part(other, box_model(Vec3(0.2)), 1, {{0.3, 0, 0.6}, quat_identity()});
+    (void)other.add_joint("hinge", c, d, JointType::revolute, {0.15, 0, 0.4}, {0, 1, 0}).value();
+    b.set_pose({{0.3, 0, 0}, quat_axis({0, 0, 1}, kPi / 2)});
+    s.ticks(1);
+    EXPECT_EQ(s.number(s.world.id(), "solver_fallbacks"), solver);
+    if (solver == 0) swept = {a.linear_velocity(), b.linear_velocity(), c.linear_velocity(), d.linear_velocity()};
+    EXPECT_EQ(a.linear_velocity(), swept[0]) << solver;
+    EXPECT_EQ(b.linear_velocity(), swept[1]) << solver;
+    EXPECT_EQ(c.linear_velocity(), swept[2]) << solver;
+    EXPECT_EQ(d.linear_velocity(), swept[3]) << solver;
+  }
+}
+
 }  // namespace
 }  // namespace limber

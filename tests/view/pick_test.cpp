@@ -46,6 +46,41 @@ TEST(Pick, SeesThroughThePartThatIsFree) {
   EXPECT_TRUE(pick(*now, lens, -0.5, 0.5).has_value()) << "the middle of the upper left quarter";
 }
 
+// beside a capsule's end, a cone's tip, in a mesh's corner there is nothing, though a box around it has it
+TEST(Pick, ByTheTrueForm) {
+  auto mesh = std::make_shared<MeshModel>();
+  mesh->vertices = {{-1, 0, -1}, {1, 0, -1}, {-1, 0, 1}};
+  mesh->triangles = {0, 1, 2};
+  ShapeModel triangle;
+  triangle.kind = ShapeKind::mesh;
+  triangle.mesh = mesh;
+  mesh->hull = {{-1, 0, -1}, {1, 0, -1}, {-1, 0, 1}, {-1, 0.1, -1}};
+  struct Case {
+    const char* name;
+    ShapeModel model;
+    Vec3 on, beside;
+  };
+  const Case cases[] = {{"cylinder", round(ShapeKind::cylinder, 0.5, 2), {0.45, 0, 0.95}, {0.55, 0, 0.95}},
+                        {"capsule", round(ShapeKind::capsule, 0.5, 1), {0.3, 0, 0.85}, {0.45, 0, 0.95}},
+                        {"cone", round(ShapeKind::cone, 0.5, 2), {0.2, 0, 0}, {0.4, 0, 0.6}},
+                        {"mesh", triangle, {-0.5, 0, -0.5}, {0.5, 0, 0.5}}};
+  for (const Case& c : cases) {
+    SCOPED_TRACE(c.name);
+    Stage alone;
+    alone.add(c.name, c.model);
+    alone.look_from({0, -1000, 0}, {0, 0, 0});  // from so far that rays are all but parallel
+    alone.set("/visuals/camera/fovy", {1});
+    const auto now = alone.snapshot();
+    const Lens lens = lens_of(camera_of(*now), 200, 100);
+    const auto at = [&](const Vec3& point) {
+      const glm::vec4 clip = lens.projection * lens.view * glm::vec4(glm::vec3(point), 1);
+      return pick(*now, lens, static_cast<double>(clip.x / clip.w), static_cast<double>(clip.y / clip.w));
+    };
+    EXPECT_TRUE(at(c.on).has_value());
+    EXPECT_FALSE(at(c.beside).has_value());
+  }
+}
+
 TEST(Pick, APartThatIsOutOfTheWorldIsNoneToPick) {
   Stage stage;
   stage.add("ball", ball_of(0.5), {0, 0, 0});

@@ -2,6 +2,7 @@
 #include "view/renderer.h"
 
 #include <array>
+#include <cmath>
 
 #include "base/color.h"
 #include "view/stage.h"
@@ -309,6 +310,60 @@ TEST(Renderer, AbsurdNumbersDrawSomething) {
   stage.set("/visuals/camera/far", {1e7});
   stage.set("/visuals/camera/aspect", {100});
   EXPECT_GT(brightness(draw(stage, 64, 36, Quality::high)), 1);
+}
+
+TEST(Renderer, WhatLiesBelowTheGroundIsSeenWhereThereIsNoFloor) {
+  Stage stage;
+  stage.add("ball", round(ShapeKind::sphere, 1));
+  stage.paint("ball", kGreen);
+  stage.look_from({0, -3, 1}, {0, 0, 0});
+  for (const double studio : {0.0, 1.0}) {
+    stage.set("/visuals/look/style", {studio});
+    stage.set("/visuals/look/floor", {1});
+    const Vec3 hidden = color(draw(stage, 64, 36), 32, 30);
+    EXPECT_FALSE(hidden.y > 1.3 * hidden.x && hidden.y > 1.3 * hidden.z) << "by the floor";
+    stage.set("/visuals/look/floor", {0});
+    const Vec3 seen = color(draw(stage, 64, 36), 32, 30);
+    EXPECT_GT(seen.y, 1.3 * seen.x);
+    EXPECT_GT(seen.y, 1.3 * seen.z);
+  }
+}
+
+// rings of triangles, about as many as a scan has
+TEST(Renderer, AMeshOfAHundredThousandTrianglesIsDrawnInEachQuality) {
+  constexpr unsigned kAround = 224;
+  auto mesh = std::make_shared<MeshModel>();
+  for (unsigned i = 0; i <= kAround; i++) {
+    for (unsigned k = 0; k < kAround; k++) {
+      const double up = kPi * i / kAround;
+      const double turn = 2 * kPi * k / kAround;
+      mesh->vertices.emplace_back(std::sin(up) * std::cos(turn), std::sin(up) * std::sin(turn), std::cos(up));
+    }
+  }
+  for (unsigned i = 0; i < kAround; i++) {
+    for (unsigned k = 0; k < kAround; k++) {
+      const unsigned a = i * kAround + k;
+      const unsigned b = i * kAround + (k + 1) % kAround;
+      for (const unsigned v : {a, a + kAround, b, b, a + kAround, b + kAround}) mesh->triangles.push_back(v);
+    }
+  }
+  ASSERT_GT(mesh->triangles.size(), 300000u);
+  mesh->hull = {{1, 0, 0}, {-1, 0, 0}, {0, 1, 0}, {0, -1, 0}, {0, 0, 1}, {0, 0, -1}};
+  ShapeModel model;
+  model.kind = ShapeKind::mesh;
+  model.mesh = mesh;
+  Stage stage;
+  stage.set("/visuals/look/floor", {0});
+  stage.look_from({0, -3, 1.5}, {0, 0, 0});
+  const Pixels without = draw(stage, 64, 36);
+  stage.add("scan", model);
+  stage.paint("scan", kGreen);
+  for (const Quality quality : {Quality::low, Quality::high}) {
+    const Vec3 c = color(draw(stage, 64, 36, quality), 32, 18);
+    EXPECT_GT(c.y, c.x + 20);
+    EXPECT_GT(c.y, c.z + 20);
+  }
+  EXPECT_NE(draw(stage, 64, 36).bytes, without.bytes);
 }
 
 TEST(Renderer, ManyPartsOfEveryKind) {

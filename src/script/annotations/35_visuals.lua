@@ -37,3 +37,7 @@ function camera_:follow(thing) end
 ---@field alive boolean # read-only. Always true.
 ---@rows look
 local look_ = {}
+
+---Takes a style by its number (0: stage, 1: studio), unless the scene says which one it has.
+---@param style integer
+function look_:prefer(style) end

@@ -17,6 +17,7 @@ function behavior(definition) end
 ---What the functions of a behaviour get: its parameters by their names, and these.
 ---@class behavior_self
 ---@field active boolean
+---@field place integer # Which one it is, from 1, of those that act on its body in a tick.
 ---@field name string # read-only.
 ---@field alive boolean # read-only. Whether it is still attached.
 ---@field type string # read-only.
@@ -69,6 +70,7 @@ function behavior_self_:neighbor_push(part, min_dist, max_dist) end
 ---@field type string # read-only.
 ---@field body body # read-only.
 ---@field active boolean # default true. Setting it, to whatever, lets one that failed try again.
+---@field place integer # Which one it is, from 1, of those that act on its body in a tick; setting it puts it there.
 ---@field error? string # read-only. Why it rests although it is active.
 ---@field time number # read-only, µs. What the last tick spent on it.
 ---@field parts part_list # read-only.
@@ -93,6 +95,7 @@ function behavior_:remove() end
 ---@field alive boolean # read-only.
 ---@field type string # read-only.
 ---@field active boolean # default true. Setting it sets that of every member.
+---@field place integer # Which one it is, from 1, of all names of behaviours; setting it puts it there.
 ---@field time number # read-only, µs. What the last tick spent on all of it.
 ---@field [string] any # Its parameters: what is written goes to every member.
 local behavior_group_ = {}

@@ -10,7 +10,7 @@ P.behavior_types = types
 local keys = { doc = true, params = true, group = true, start = true, step = true, migrate = true }
 local functions = { "start", "step", "migrate" }
 -- what `self` and a behaviour's handle have beside their parameters
-local members = { "active", "name", "type", "body", "group", "parts", "joints", "motors", "time", "state", "rng", "due",
+local members = { "active", "place", "name", "type", "body", "group", "parts", "joints", "motors", "time", "state", "rng", "due",
   "neighbor_parts", "neighbors", "neighbor_means", "neighbor_push", "error", "remove", "alive", "members", "bodies" }
 
 -- the line in which a word first stands, as a whole; the last line without one

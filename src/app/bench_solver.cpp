@@ -1,0 +1,274 @@
+// Each machine in stock Bullet and with the direct solver, step by step in turn; its figures, one line a scene.
+#include "app/bench_solver.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "app/bench_times.h"
+#include "sim/raw_machines.h"
+
+namespace limber {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr int kRandomTrees = 300;
+constexpr unsigned kFirstSeed = 90001;  // none that was looked at while the solver was made
+
+struct Side {
+  explicit Side(const RawScene& scene, RawSolver solver) : player(RawPlayer::make(scene, solver)) {}
+  void step() {
+    const double start = thread_seconds();
+    player->step();
+    times.add(thread_seconds() - start);
+    worst.take(player->figures());
+  }
+  Json figures() const {
+    Json out = {{"gap_mm", rounded(worst.gap * 1e3, 3)},
+                {"servo_error_rad", rounded(worst.servo_error, 4)},
+                {"limit_passed_rad", rounded(worst.limit_passed, 4)},
+                {"step_us", times.microseconds()}};
+    if (!worst.finite) out["finite"] = false;
+    return out;
+  }
+  std::unique_ptr<RawPlayer> player;
+  Samples times;
+  RawFigures worst;
+};
+
+Json island_steps(const RawPlayer::Direct& d) {
+  return {{"direct", d.direct}, {"by_rule_plain", d.plain}, {"fallbacks", d.fallbacks}};
+}
+
+// Residuals cost time, so they are another run's.
+Json residuals(RawScene scene, int steps) {
+  scene.measure = true;
+  const auto player = RawPlayer::make(scene, RawSolver::direct);
+  for (int i = 0; i < steps; ++i) player->step();
+  const RawPlayer::Direct d = player->direct();
+  return {{"locked", d.locked}, {"bounded", d.bounded}, {"contact", d.contact}};
+}
+
+Json play(const RawScene& scene, int steps, double seconds = 6) {
+  Side stock(scene, RawSolver::stock);
+  Side direct(scene, RawSolver::direct);
+  const int count = steps > 0 ? steps : static_cast<int>(seconds / scene.step);
+  for (int i = 0; i < count; ++i) {
+    stock.step();
+    direct.step();
+  }
+  Json out = {{"stock", stock.figures()}, {"direct", direct.figures()}};
+  out["direct"]["island_steps"] = island_steps(direct.player->direct());
+  out["direct"]["residuals"] = residuals(scene, count);
+  out["time_ratio"] = {{"min", rounded(direct.times.at(0) / stock.times.at(0), 2)},
+                       {"median", rounded(direct.times.at(0.5) / stock.times.at(0.5), 2)},
+                       {"worst_to_median", rounded(direct.times.at(1) / stock.times.at(0.5), 2)}};
+  return out;
+}
+
+// Contacts above all: the second half of the steps is timed.
+Json play_crowd(const RawScene& scene, int steps) {
+  Side stock(scene, RawSolver::stock);
+  Side ours(scene, RawSolver::direct);
+  for (int i = 0; i < steps; ++i) {
+    if (i == steps / 2) stock.times = ours.times = {};
+    stock.step();
+    ours.step();
+  }
+  return {{"stock", stock.figures()},
+          {"ours", ours.figures()},
+          {"island_steps", island_steps(ours.player->direct())},
+          {"time_ratio",
+           {{"min", rounded(ours.times.at(0) / stock.times.at(0), 2)},
+            {"median", rounded(ours.times.at(0.5) / stock.times.at(0.5), 2)}}}};
+}
+
+// How many of the random trees are clearly worse than stock: 1.1 times its gap and 2 mm more.
+Json play_random(double step, bool floor, int trees, int steps) {
+  int worse = 0;
+  int lost = 0;
+  RawPlayer::Direct all;
+  std::array<int, 2> torn{};
+  for (int i = 0; i < trees; ++i) {
+    const RawScene scene = raw_at_step(raw_random_tree(kFirstSeed + static_cast<unsigned>(i), floor), step);
+    Side stock(scene, RawSolver::stock);
+    Side direct(scene, RawSolver::direct);
+    const int count = steps > 0 ? steps : static_cast<int>(3 / step);
+    for (int k = 0; k < count; ++k) {
+      stock.step();
+      direct.step();
+    }
+    worse += direct.worst.gap > 1.1 * stock.worst.gap + 2e-3 ? 1 : 0;
+    lost += direct.worst.finite ? 0 : 1;
+    torn[0] += stock.worst.gap > 0.1 ? 1 : 0;
+    torn[1] += direct.worst.gap > 0.1 ? 1 : 0;
+    const RawPlayer::Direct d = direct.player->direct();
+    all.direct += d.direct;
+    all.plain += d.plain;
+    all.fallbacks += d.fallbacks;
+  }
+  return {{"trees", trees},
+          {"clearly_worse", worse},
+          {"no_number", lost},
+          {"gap_over_100_mm", {{"stock", torn[0]}, {"direct", torn[1]}}},
+          {"island_steps", island_steps(all)}};
+}
+
+// A chain that lies at first and swings for a minute, nothing driving or braking it.
+Json play_passive(int parts, double step, int steps) {
+  RawScene s = raw_at_step(raw_arm(17, 1, 0, 0, false), step);
+  s.floor = false;
+  s.parts.resize(static_cast<std::size_t>(parts) + 1);
+  s.joints.resize(static_cast<std::size_t>(parts));
+  s.gravity = {9.81, 0, 0};
+  const double swing = 9.81 * parts * 0.1 * parts;
+  Json out;
+  for (const RawSolver solver : {RawSolver::stock, RawSolver::direct}) {
+    const auto player = RawPlayer::make(s, solver);
+    const double begun = player->energy();
+    double most = begun;
+    RawFigures worst;
+    const int count = steps > 0 ? steps : static_cast<int>(60 / step);
+    for (int i = 0; i < count; ++i) {
+      player->step();
+      worst.take(player->figures());
+      most = std::max(most, player->energy());
+    }
+    out[solver == RawSolver::stock ? "stock" : "direct"] = {
+        {"gain_percent_of_swing", rounded(100 * (most - begun) / swing, 3)},
+        {"at_end_percent", rounded(100 * (player->energy() - begun) / swing, 1)},
+        {"gap_mm", rounded(worst.gap * 1e3, 3)}};
+  }
+  return out;
+}
+
+// Where the ball is after three seconds: with sweeps until they converge, at two steps, and with the direct solver.
+Json play_hand(double torque, int steps) {
+  Json out;
+  const auto sink = [&](double step, RawSolver solver, int iterations) {
+    RawScene s = raw_at_step(raw_hand(torque), step);
+    s.iterations = iterations;
+    const auto player = RawPlayer::make(s, solver);
+    const int ball = static_cast<int>(s.parts.size()) - 1;
+    const double from = player->pose(ball).position.z;
+    const int count = steps > 0 ? steps : static_cast<int>(3 / step);
+    for (int i = 0; i < count; ++i) player->step();
+    return rounded(1e3 * (player->pose(ball).position.z - from), 2);
+  };
+  out["moved_mm"] = {{"stock", sink(1.0 / 60, RawSolver::stock, 10)},
+                     {"sweeps_1000", sink(1.0 / 60, RawSolver::sweeps, 1000)},
+                     {"sweeps_1000_at_240", sink(1.0 / 240, RawSolver::sweeps, 1000)},
+                     {"direct", sink(1.0 / 60, RawSolver::direct, 10)},
+                     {"direct_at_240", sink(1.0 / 240, RawSolver::direct, 10)}};
+  out["residuals"] = residuals(raw_hand(torque), steps > 0 ? steps : 180);
+  return out;
+}
+
+// How often a scene's step is taken before the next one has its turn, so that each finds its own caches again.
+struct Turn {
+  explicit Turn(const RawScene& scene, int count) : side(scene, RawSolver::direct), steps(count) {}
+  void take() {
+    for (int i = 0; i < steps; ++i) side.step();
+  }
+  // beside the same of another scene, both spread over their units
+  Json figures(const char* what, double units, const Turn& base, double base_units) const {
+    const auto each = [&](double part) { return 1e6 * side.times.at(part) / units; };
+    const auto ratio = [&](double part) {
+      return rounded(each(part) / (1e6 * base.side.times.at(part) / base_units), 3);
+    };
+    Json out = side.figures();
+    out[fmt::format("us_per_{}", what)] = {{"p5", rounded(each(kLeast), 3)}, {"median", rounded(each(0.5), 3)}};
+    out["times_the_first"] = {{"p5", ratio(kLeast)}, {"median", ratio(0.5)}};
+    out["island_steps"] = island_steps(side.player->direct());
+    return out;
+  }
+  // not the very least: a thread's clock on a virtual machine now and then tells far too little of a single step
+  static constexpr double kLeast = 0.05;
+  Side side;
+  int steps;
+};
+
+// One arm that gets longer, and ten times the arms: what a joint costs, what a part costs.
+Json play_growth(int steps) {
+  constexpr double kStrong = 1e6;  // N·m: what holds 170 parts; with less the servos of long arms give way
+  Json out;
+  const int rounds = steps > 0 ? steps : 60;
+  std::vector<std::pair<int, std::unique_ptr<Turn>>> arms;
+  for (const int parts : {17, 34, 85, 170}) {
+    arms.emplace_back(parts, std::make_unique<Turn>(raw_arm(parts, 1, kStrong, 0.3, false), 10));
+  }
+  for (int i = 0; i < rounds; ++i) {
+    for (const auto& [parts, turn] : arms) turn->take();
+  }
+  for (const auto& [parts, turn] : arms) {
+    out[fmt::format("{} joints", parts)] = turn->figures("joint", parts, *arms[0].second, arms[0].first);
+  }
+  Turn few(raw_arms(100), 10);
+  Turn many(raw_arms(1000), 1);
+  for (int i = 0; i < rounds; ++i) {
+    few.take();
+    many.take();
+  }
+  out["100 arms"] = few.figures("part", 1800, few, 1800);
+  out["1000 arms"] = many.figures("part", 18000, few, 1800);
+  return out;
+}
+
+void add_arms(Json& out, int steps) {
+  const auto arm = [](double ratio, double force, double amplitude, bool square) {
+    return raw_arm(17, ratio, force, amplitude, square);
+  };
+  out["arm"] = play(arm(1, 10000, 0.3, false), steps);
+  out["arm, masses 13:1"] = play(arm(13, 10000, 0.3, false), steps);
+  out["arm, masses 129:1"] = play(arm(129, 10000, 0.3, false), steps);
+  out["the predecessor's robot, 129:1"] = play(raw_robot(10000, 0.3), steps);
+  out["arm upright"] = play(arm(1, 10000, 0, false), steps, 60);
+  for (const int rate : {30, 60, 240}) {
+    for (const int force : {5, 50, 10000}) {
+      out[fmt::format("square wave, {} N·m, 1/{} s", force, rate)] =
+          play(raw_at_step(arm(1, force, 0.6, true), 1.0 / rate), steps);
+    }
+  }
+  out["limits met in free fall"] = play(raw_lying_arm(0.2), steps);
+  out["servos past their limits"] = play(raw_limited(arm(1, 10000, 0.6, true), 0.2, true), steps);
+}
+
+}  // namespace
+
+Json bench_solver(int steps) {
+  Json out;
+  add_arms(out, steps);
+  out["tree, standing"] = play(raw_tree(false), steps);
+  out["tree, floating"] = play(raw_tree(true), steps);
+  out["four legs, 10 kg on 0.5 kg"] = play(raw_legs(10, 0.5, false), steps);
+  out["four legs, 50 kg on 1 kg"] = play(raw_legs(50, 1, false), steps);
+  out["four legs walking"] = play(raw_legs(10, 0.5, true), steps);
+  out["four legs walking, 50 kg on 1 kg"] = play(raw_legs(50, 1, true), steps);
+  out["hand, 0.3 N·m"] = play_hand(0.3, steps);
+  out["hand, 3 N·m"] = play_hand(3, steps);
+  out["clump of 100 creatures"] = play(raw_clump(100), steps, 3);
+  out["passive chain of 17, 1/240 s"] = play_passive(17, 1.0 / 240, steps);
+  out["passive chain of 5, 1/240 s"] = play_passive(5, 1.0 / 240, steps);
+  out["100 arms"] = play(raw_arms(100), steps > 0 ? steps : 60);
+  out["growth"] = play_growth(steps);
+  out["1000 arms"] = play(raw_arms(1000), steps > 0 ? steps : 16);
+  const int trees = steps > 0 ? 10 : kRandomTrees;
+  for (const bool floor : {false, true}) {
+    for (const int rate : {30, 60, 240}) {
+      out[fmt::format("random trees{}, 1/{} s", floor ? " over a floor" : "", rate)] =
+          play_random(1.0 / rate, floor, trees, steps);
+    }
+  }
+  return out;
+}
+
+Json bench_swarm(int steps) { return play_crowd(raw_clump(300), steps > 0 ? steps : 300); }
+
+Json bench_pile(int steps) { return play_crowd(raw_pile(2000), steps > 0 ? steps : 400); }
+
+}  // namespace limber

@@ -1,0 +1,57 @@
+// Pairs, one after the other, so that what else the machine does falls on both.
+#include "app/bench_threads.h"
+
+#include "app/bench_arms.h"
+#include "app/bench_times.h"
+
+namespace limber {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr int kPairs = 15;
+constexpr int kWarmTicks = 4;
+
+double play_some(BenchArms& arms, int ticks) {
+  double seconds = 0;
+  for (int i = 0; i < ticks; i++) {
+    arms.drive(arms.time());
+    const double start = bench_seconds();
+    arms.tick();
+    seconds += bench_seconds() - start;
+  }
+  return seconds;
+}
+
+Json one_and_two(const ArmScene& scene, int ticks) {
+  BenchArms one(scene, 1);
+  BenchArms two(scene, 2);
+  play_some(one, kWarmTicks);
+  play_some(two, kWarmTicks);
+  Samples alone, together, ratio;
+  for (int i = 0; i < kPairs; i++) {
+    const double a = play_some(one, ticks);
+    const double b = play_some(two, ticks);
+    alone.add(a / ticks);
+    together.add(b / ticks);
+    ratio.add(b / a);
+  }
+  return {{"one_us", alone.microseconds()},
+          {"two_us", together.microseconds()},
+          {"ratio", {{"min", rounded(ratio.at(0), 3)}, {"median", rounded(ratio.at(0.5), 3)}}},
+          {"same_state", one.engine().state_hash() == two.engine().state_hash()}};
+}
+
+}  // namespace
+
+nlohmann::ordered_json bench_threads(const BenchOptions& options) {
+  const auto ticks = [&](int chosen) { return options.ticks > 0 ? options.ticks : chosen; };
+  Json figures = {{"pairs", kPairs}};
+  figures["100 arms, direct"] = one_and_two(direct_arm_scene(100), ticks(10));
+  figures["1000 arms, direct"] = one_and_two(direct_arm_scene(1000), ticks(2));
+  figures["100 arms, iterative"] = one_and_two(bench_arm_scene(100), ticks(4));
+  return figures;
+}
+
+}  // namespace limber

@@ -1,0 +1,53 @@
+// Team: some threads that share out the pieces of one work; the caller is one of them.
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+#include <memory>
+#include <thread>
+#include <type_traits>
+#include <vector>
+
+namespace limber {
+
+class Team {
+ public:
+  static constexpr int kMost = 64;
+
+  /// `members` from 1 to kMost, the caller of run() counted: so many threads less one are started.
+  explicit Team(int members);
+  ~Team();
+  Team(const Team&) = delete;
+  Team& operator=(const Team&) = delete;
+
+  int members() const { return static_cast<int>(helpers_.size()) + 1; }
+
+  /// Calls work(piece, member) once for each piece from 0 to pieces - 1, on whichever member is free (0: the caller),
+  /// and returns when all are done. Nothing is allocated. The work must not throw. [one thread at a time]
+  template <class Work>
+  void run(int pieces, Work&& work) {
+    share(
+        pieces,
+        [](void* of, int piece, int member) { (*static_cast<std::remove_reference_t<Work>*>(of))(piece, member); },
+        static_cast<void*>(std::addressof(work)));
+  }
+
+ private:
+  using Call = void (*)(void* of, int piece, int member);
+  static constexpr int kPieceBits = 32;
+
+  void share(int pieces, Call call, void* of);
+  void help(int member);
+  void take_pieces(std::uint64_t round, int member);
+
+  // the round's number above, how many of its pieces nobody has taken below: a latecomer can't take another round's
+  std::atomic<std::uint64_t> ticket_{0};
+  std::atomic<std::uint32_t> round_{0};  // what helpers sleep on
+  std::atomic<int> open_{0};             // pieces of this round that are not done
+  Call call_ = nullptr;                  // read only by who has taken a piece: the round can't end before
+  void* of_ = nullptr;
+  std::atomic<bool> ends_{false};
+  std::vector<std::thread> helpers_;
+};
+
+}  // namespace limber

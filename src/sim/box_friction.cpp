@@ -1,0 +1,141 @@
+// Friction and its normals: rounds of a convex problem in which friction's bounds stay, and the tied one from there.
+#include <algorithm>
+#include <cmath>
+
+#include "sim/box_solver.h"
+
+namespace limber {
+namespace {
+
+constexpr int kTiedExchanges = 4;
+constexpr int kDescents = 60;
+constexpr int kBlockReleases = 30;
+constexpr int kRecenterings = 5;
+constexpr int kFrictionRounds = 12;
+constexpr int kFullRounds = 3;  // after them friction's bounds follow by halves
+
+}  // namespace
+
+// Bounds that stay make it a convex problem: from the least within the free rows to that of the next set of them, cut
+// off at bounds where that still leads down. Each step makes the dual energy less.
+bool BoxSolver::descend(double tolerance) {
+  before_.resize(rows_.size());
+  int settled = 0;
+  for (int round = 0; round < kDescents; ++round) {
+    assemble();
+    if (static_cast<int>(free_.size()) > kMostFree || !decompose()) return false;
+    left_before_ = left_;
+    for (int i = 0; i < size(); ++i) before_[nth(i)] = row(i).impulse;
+    correct_free();
+    if (!step_within_bounds()) continue;
+    if (release(tolerance, round > kBlockReleases) > 0) continue;
+    recenter();
+    least_missed_ = missed();
+    if (least_missed_ <= tolerance || ++settled == kRecenterings) return true;
+  }
+  recenter();
+  least_missed_ = missed();
+  return false;
+}
+
+// From before_ to where the free rows want to be, or as far as that may be gone. True: all of it.
+bool BoxSolver::step_within_bounds() {
+  double reach = 1;
+  for (const int i : free_) {
+    const Row& r = row(i);
+    const double from = before_[nth(i)];
+    if (r.impulse > r.upper) reach = std::min(reach, (r.upper - from) / (r.impulse - from));
+    if (r.impulse < r.lower) reach = std::min(reach, (r.lower - from) / (r.impulse - from));
+  }
+  if (reach == 1) return true;
+  step_.resize(free_.size());
+  for (std::size_t k = 0; k < free_.size(); ++k) {
+    const int i = free_[k];
+    step_[k] = row(i).impulse - before_[nth(i)];
+    put(i, std::clamp(row(i).impulse, row(i).lower, row(i).upper));
+  }
+  double gained = 0;
+  for (const int i : free_) gained += (row(i).impulse - before_[nth(i)]) * (left_before_[nth(i)] + left_[nth(i)]);
+  const bool down = gained > 0;
+  for (std::size_t k = 0; k < free_.size(); ++k) {
+    const int i = free_[k];
+    Row& r = row(i);
+    const double from = before_[nth(i)];
+    const double to = from + step_[k];
+    const bool over = to > r.upper;
+    if (!over && to >= r.lower) {
+      if (!down) put(i, from + reach * step_[k]);
+      continue;
+    }
+    const double bound = over ? r.upper : r.lower;
+    if (down || std::fabs(bound - from) <= reach * std::fabs(step_[k]) * (1 + 1e-12)) {
+      put(i, bound);
+      status_[nth(i)] = over ? at_upper : at_lower;
+    } else {
+      put(i, from + reach * step_[k]);
+    }
+  }
+  return false;
+}
+
+// Rows at their bounds that would leave them become free: all, or the one that wants it most.
+int BoxSolver::release(double tolerance, bool only_one) {
+  int released = 0;
+  int most = -1;
+  double wish = 0;
+  for (int i = 0; i < size(); ++i) {
+    const Row& r = row(i);
+    if (status_[nth(i)] == free || !(response(i, i) > 0) || !(r.lower < r.upper)) continue;
+    const double wants = status_[nth(i)] == at_lower ? left_[nth(i)] : -left_[nth(i)];
+    if (!(wants > 0.5 * tolerance)) continue;
+    released++;
+    if (!only_one) status_[nth(i)] = free;
+    if (wants > wish) {
+      wish = wants;
+      most = i;
+    }
+  }
+  if (only_one && most >= 0) status_[nth(most)] = free;
+  return released;
+}
+
+// Bounds of friction go that part of the way to what the normals of the moment say, and stay there.
+void BoxSolver::hold_friction(double part) {
+  for (int i = 0; i < size(); ++i) {
+    Row& r = row(i);
+    if (r.normal < 0) continue;
+    const double before = held_[nth(i)];
+    frozen_ = false;
+    bound(r);
+    const double reach = part == 1 ? r.upper : before + part * (r.upper - before);
+    held_[nth(i)] = r.upper = reach;
+    r.lower = -reach;
+  }
+  frozen_ = true;
+}
+
+// Friction bounded by the normals of the round before: a problem that always has a solution, and one that the tied one
+// is near.
+bool BoxSolver::settle_friction(double tolerance) {
+  for (int round = 0; round < kFrictionRounds; ++round) {
+    hold_friction(round < kFullRounds ? 1 : 0.5);
+    for (int i = 0; i < size(); ++i) put(i, std::clamp(row(i).impulse, row(i).lower, row(i).upper));
+    if (round == 0) read_statuses();
+    if (!descend(tolerance)) return false;
+    if (round + 1 == kFrictionRounds) break;
+    frozen_ = false;
+    if (missed() <= tolerance) return true;
+    for (int i = 0; i < size(); ++i) settled_[nth(i)] = row(i).impulse;
+    settled_status_ = status_;
+    const double settled_missed = least_missed_;
+    least_missed_ = 1e300;
+    if (pivot(tolerance, kTiedExchanges)) return true;
+    least_missed_ = settled_missed;
+    for (int i = 0; i < size(); ++i) put(i, settled_[nth(i)]);
+    recenter();
+    status_ = settled_status_;
+  }
+  return true;
+}
+
+}  // namespace limber

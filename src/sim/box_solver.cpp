@@ -1,0 +1,305 @@
+// Exchanges of rows at their bounds, all free rows solved for at once; sweeps guess where that begins badly.
+#include "sim/box_solver.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+
+namespace limber {
+namespace {
+
+constexpr int kFirstExchanges = 5;  // from where the rows stand
+constexpr int kSweeps = 8;
+constexpr int kLastSweeps = 48;
+constexpr int kPatience = 3;  // exchanges that may bring nothing before they are made one by one
+/// Rows that depend on each other (four contact points of a box) get this much softness, as part of their response.
+constexpr double kSoftness = 1e-6;
+
+using Pair = double __attribute__((vector_size(16)));
+
+// y -= a·x, over an even count
+void subtract_scaled(double* y, const double* a, double x, int count) {
+  const Pair scale = {x, x};
+  for (int i = 0; i < count; i += 2) {
+    Pair p;
+    Pair q;
+    std::memcpy(&p, y + i, sizeof p);
+    std::memcpy(&q, a + i, sizeof q);
+    p -= q * scale;
+    std::memcpy(y + i, &p, sizeof p);
+  }
+}
+
+}  // namespace
+
+void BoxSolver::start(int rows) {
+  stride_ = (rows + 1) / 2 * 2;
+  rows_.assign(nth(rows), Row{});
+  response_.assign(nth(rows * stride_), 0);
+  left_.assign(nth(stride_), 0);
+}
+
+void BoxSolver::bound(Row& row) const {
+  if (row.normal < 0 || frozen_) return;
+  double reach = row.friction * std::max(rows_[nth(row.normal)].impulse, 0.0);
+  if (row.most > 0) reach = std::min(reach, row.most);
+  row.lower = -reach;
+  row.upper = reach;
+}
+
+void BoxSolver::apply(int i, double change) {
+  if (change == 0) return;
+  row(i).impulse += change;
+  subtract_scaled(left_.data(), &response(i, 0), change, stride_);
+}
+
+void BoxSolver::restart() {
+  for (int i = 0; i < size(); ++i) {
+    row(i).impulse = center_[nth(i)] = start_[nth(i)];
+    left_[nth(i)] = row(i).left;
+  }
+}
+
+void BoxSolver::sweep() {
+  for (int i = 0; i < size(); ++i) {
+    Row& r = row(i);
+    const double own = response(i, i);
+    if (!(own > 0)) continue;
+    bound(r);
+    put(i, std::clamp(r.impulse + left_[nth(i)] / own, r.lower, r.upper));
+  }
+}
+
+double BoxSolver::missed() {
+  double most = 0;
+  for (int i = 0; i < size(); ++i) {
+    Row& r = row(i);
+    const double own = response(i, i);
+    if (!(own > 0)) continue;
+    bound(r);
+    const double after = std::clamp(r.impulse + left_[nth(i)] / own, r.lower, r.upper);
+    const double miss = std::fabs(after - r.impulse) * own;
+    if (!(miss <= most)) most = miss;
+  }
+  return most;
+}
+
+void BoxSolver::keep_best() {
+  recenter();
+  const double miss = missed();
+  if (!(miss < least_missed_)) return;
+  least_missed_ = miss;
+  for (int i = 0; i < size(); ++i) best_[nth(i)] = row(i).impulse;
+}
+
+void BoxSolver::take_best() {
+  for (int i = 0; i < size(); ++i) put(i, best_[nth(i)]);
+}
+
+void BoxSolver::read_statuses() {
+  for (int i = 0; i < size(); ++i) {
+    Row& r = row(i);
+    bound(r);
+    const double slack = 1e-9 * (1e-6 + std::fabs(r.impulse));
+    status_[nth(i)] = r.impulse <= r.lower + slack ? at_lower : r.impulse >= r.upper - slack ? at_upper : free;
+    // at no impulse a friction row slides where it would be pushed back
+    if (r.normal >= 0 && r.lower == r.upper) status_[nth(i)] = left_[nth(i)] > 0 ? at_upper : at_lower;
+  }
+}
+
+// The free row whose impulse sets that of row i, at its bound; -1: none.
+int BoxSolver::slides_with(int i) const {
+  const Row& r = rows_[nth(i)];
+  if (frozen_ || r.normal < 0 || status_[nth(i)] == free) return -1;
+  const bool capped = r.most > 0 && r.friction * rows_[nth(r.normal)].impulse > r.most;
+  return capped ? -1 : place_[nth(r.normal)];
+}
+
+// The system of the free rows; a sliding row's impulse is a part of its normal's.
+void BoxSolver::assemble() {
+  free_.clear();
+  place_.assign(rows_.size(), -1);
+  for (int i = 0; i < size(); ++i) {
+    if (status_[nth(i)] != free || !(response(i, i) > 0)) continue;
+    place_[nth(i)] = static_cast<int>(free_.size());
+    free_.push_back(i);
+  }
+  const int n = static_cast<int>(free_.size());
+  width_ = (n + 1) / 2 * 2;
+  factor_.assign(nth(n * width_), 0);
+  for (int i = 0; i < n; ++i) {
+    const double* from = &response(free_[nth(i)], 0);
+    double* to = &factor_[nth(i * width_)];
+    for (int k = 0; k < n; ++k) to[k] = from[free_[nth(k)]];
+  }
+  for (int k = 0; k < size(); ++k) {
+    const int with = slides_with(k);
+    if (with < 0) continue;
+    const double part = status_[nth(k)] == at_upper ? row(k).friction : -row(k).friction;
+    for (int i = 0; i < n; ++i) factor_[nth(i * width_ + with)] += part * response(free_[nth(i)], k);
+  }
+}
+
+// Into a lower and an upper triangle, lines exchanged. False where there are none.
+bool BoxSolver::decompose() {
+  const int n = static_cast<int>(free_.size());
+  exchanged_.resize(nth(n));
+  for (int c = 0; c < n; ++c) {
+    int top = c;
+    for (int r = c + 1; r < n; ++r) {
+      if (std::fabs(factor_[nth(r * width_ + c)]) > std::fabs(factor_[nth(top * width_ + c)])) top = r;
+    }
+    double* line = &factor_[nth(c * width_)];
+    exchanged_[nth(c)] = top;
+    if (top != c) std::swap_ranges(line, line + width_, &factor_[nth(top * width_)]);
+    if (!(std::fabs(line[c]) > 0) || !std::isfinite(line[c])) return false;
+    const double inverse = 1 / line[c];
+    const int begin = c / 2 * 2;
+    for (int r = c + 1; r < n; ++r) {
+      double* other = &factor_[nth(r * width_)];
+      const double part = other[c] * inverse;
+      if (part == 0) continue;
+      const double before = other[begin];
+      subtract_scaled(other + begin, line + begin, part, width_ - begin);
+      other[begin] = before;
+      other[c] = part;
+    }
+  }
+  return true;
+}
+
+// What free rows still miss is given to them, with what slides along.
+void BoxSolver::correct_free() {
+  const int n = static_cast<int>(free_.size());
+  step_.resize(nth(n));
+  for (int i = 0; i < n; ++i) step_[nth(i)] = left_[nth(free_[nth(i)])];
+  for (int c = 0; c < n; ++c) std::swap(step_[nth(c)], step_[nth(exchanged_[nth(c)])]);
+  for (int r = 0; r < n; ++r) {
+    double sum = step_[nth(r)];
+    for (int c = 0; c < r; ++c) sum -= factor_[nth(r * width_ + c)] * step_[nth(c)];
+    step_[nth(r)] = sum;
+  }
+  for (int r = n; r-- > 0;) {
+    double sum = step_[nth(r)];
+    for (int c = r + 1; c < n; ++c) sum -= factor_[nth(r * width_ + c)] * step_[nth(c)];
+    step_[nth(r)] = sum / factor_[nth(r * width_ + r)];
+  }
+  for (int i = 0; i < n; ++i) apply(free_[nth(i)], step_[nth(i)]);
+  follow_normals();
+}
+
+void BoxSolver::follow_normals() {
+  for (int i = 0; i < size(); ++i) {
+    if (status_[nth(i)] == free) continue;
+    Row& r = row(i);
+    bound(r);
+    double to = status_[nth(i)] == at_upper ? r.upper : r.lower;
+    // tied also where the normal pulls, which the next exchange sees
+    if (slides_with(i) >= 0) to = (status_[nth(i)] == at_upper ? r.friction : -r.friction) * row(r.normal).impulse;
+    put(i, to);
+  }
+}
+
+bool BoxSolver::solve_free() {
+  if (!factored_) {
+    assemble();
+    if (static_cast<int>(free_.size()) > kMostFree || !decompose()) return false;
+    factored_ = true;
+  }
+  follow_normals();
+  correct_free();
+  return true;
+}
+
+// Softness pulls towards the impulses of the moment, so that it is worth nothing where they are right.
+void BoxSolver::recenter() {
+  for (int i = 0; i < size(); ++i) {
+    left_[nth(i)] += kSoftness / (1 + kSoftness) * response(i, i) * (row(i).impulse - center_[nth(i)]);
+    center_[nth(i)] = row(i).impulse;
+  }
+}
+
+// Rows whose status their law does not allow change it; returns how many there were.
+int BoxSolver::exchange(double tolerance, bool only_last) {
+  int broken = 0;
+  for (int i = size(); i-- > 0;) {
+    Row& r = row(i);
+    if (!(response(i, i) > 0)) continue;
+    bound(r);
+    Status& status = status_[nth(i)];
+    Status to = status;
+    const double left = left_[nth(i)];
+    if (status == free) {
+      const double slack = 0.1 * tolerance / response(i, i);
+      if (r.impulse < r.lower - slack) to = at_lower;
+      if (r.impulse > r.upper + slack) to = at_upper;
+    } else if (r.lower < r.upper && (status == at_lower ? left > tolerance : left < -tolerance)) {
+      to = free;
+    }
+    if (to == status) continue;
+    broken++;
+    if (!only_last || broken == 1) status = to;
+  }
+  return broken;
+}
+
+bool BoxSolver::pivot(double tolerance, int exchanges) {
+  int fewest = size() + 1;
+  int patience = kPatience;
+  factored_ = false;
+  double before = 1e300;
+  for (int round = 0; round < exchanges; ++round) {
+    if (!solve_free()) return false;
+    const int broken = exchange(tolerance, patience == 0);
+    if (broken == 0) {
+      recenter();
+      const double miss = missed();
+      keep_best();
+      if (least_missed_ <= tolerance) return true;
+      if (miss > 0.7 * before) return false;
+      before = miss;
+      continue;
+    }
+    factored_ = false;
+    if (broken < fewest) {
+      fewest = broken;
+      patience = kPatience;
+    } else {
+      patience = std::max(patience - 1, 0);
+    }
+  }
+  return false;
+}
+
+double BoxSolver::solve(double tolerance) {
+  const std::size_t n = rows_.size();
+  start_.resize(n);
+  center_.resize(n);
+  status_.resize(n);
+  best_.resize(n);
+  settled_.resize(n);
+  held_.resize(n);
+  frozen_ = false;
+  least_missed_ = 1e300;
+  for (std::size_t i = 0; i < n; ++i) start_[i] = best_[i] = rows_[i].impulse;
+  for (int i = 0; i < size(); ++i) response(i, i) *= 1 + kSoftness;
+  search(tolerance);
+  for (int i = 0; i < size(); ++i) response(i, i) /= 1 + kSoftness;
+  return least_missed_;
+}
+
+void BoxSolver::search(double tolerance) {
+  restart();
+  read_statuses();
+  if (pivot(tolerance, kFirstExchanges)) return;
+  restart();
+  for (int i = 0; i < kSweeps; ++i) sweep();
+  keep_best();
+  if (least_missed_ <= tolerance) return;
+  if (settle_friction(tolerance)) return;
+  for (int i = 0; i < kLastSweeps; ++i) sweep();
+  recenter();
+  least_missed_ = missed();
+}
+
+}  // namespace limber

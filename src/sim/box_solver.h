@@ -1,0 +1,93 @@
+// BoxSolver: impulses within bounds, friction's bounds following its normal, for a dense response matrix. Block
+// pivoting with friction that slides tied to its normal; projected Gauss-Seidel where that needs help. No Bullet.
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+namespace limber {
+
+/// left = wanted rate - response·impulses, one each row; a row obeys when left is 0 within its bounds, <= 0 at the
+/// lower and >= 0 at the upper one. [sim]
+class BoxSolver {
+ public:
+  struct Row {
+    double left = 0;  ///< What is missing at the present impulse.
+    double impulse = 0;
+    double lower = 0;
+    double upper = 0;
+    int normal = -1;      ///< Friction: the row before this one whose impulse it follows.
+    double friction = 0;  ///< Its bounds are plus and minus this part of the normal's impulse,
+    double most = 0;      ///< or this, where it is less (0: no such bound).
+  };
+
+  /// Rows and a response of zeros.
+  void start(int rows);
+  int size() const { return static_cast<int>(rows_.size()); }
+  Row& row(int i) { return rows_[static_cast<std::size_t>(i)]; }
+  /// Response of row i to a unit impulse of row j; symmetric, to be set for both orders. Softness stands on the
+  /// diagonal.
+  double& response(int i, int j) {
+    return response_[static_cast<std::size_t>(i) * static_cast<std::size_t>(stride_) + static_cast<std::size_t>(j)];
+  }
+
+  /// Until no row misses its law by more than `tolerance` (in units of rate). Returns by how much one still does.
+  /// Where friction and its normals agree on nothing (they need not), friction's bounds are those of the normals one
+  /// round before; all other laws hold.
+  double solve(double tolerance);
+
+ private:
+  enum Status : unsigned char { free, at_lower, at_upper };
+  /// More rows than this are not solved at once: it costs their cube.
+  static constexpr int kMostFree = 90;
+  static std::size_t nth(int i) { return static_cast<std::size_t>(i); }
+  void bound(Row& row) const;
+  void search(double tolerance);
+  void restart();
+  void recenter();
+  void apply(int i, double change);
+  void put(int i, double impulse) { apply(i, impulse - row(i).impulse); }
+  void sweep();
+  double missed();
+  void keep_best();
+  void take_best();
+  void read_statuses();
+  bool pivot(double tolerance, int exchanges);
+  int exchange(double tolerance, bool only_last);
+  void follow_normals();
+  bool solve_free();
+  void assemble();
+  int slides_with(int i) const;
+  bool decompose();
+  void correct_free();
+  bool descend(double tolerance);
+  bool step_within_bounds();
+  int release(double tolerance, bool only_one);
+  void hold_friction(double part);
+  bool settle_friction(double tolerance);
+
+  int stride_ = 0;
+  std::vector<Row> rows_;
+  std::vector<double> left_;
+  std::vector<double> response_;
+  std::vector<double> start_;   // impulses
+  std::vector<double> center_;  // impulses that softness pulls to
+  std::vector<Status> status_;
+  std::vector<Status> settled_status_;
+  std::vector<double> settled_;
+  std::vector<double> held_;  // bounds of friction
+  std::vector<double> before_;
+  std::vector<double> left_before_;
+  std::vector<int> free_;
+  std::vector<int> place_;  // row: in free_, or -1
+  std::vector<double> factor_;
+  std::vector<int> exchanged_;  // line of the factor that came in each one's place
+  std::vector<double> step_;
+  std::vector<double> best_;
+  double least_missed_ = 0;
+  int width_ = 0;          // of a line of the factor
+  bool frozen_ = false;    // friction's bounds stay
+  bool factored_ = false;  // for the present statuses
+};
+
+}  // namespace limber

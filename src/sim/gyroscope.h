@@ -1,0 +1,13 @@
+// What a body's own turning does to its spin. [any]
+#pragma once
+
+#include "base/vec.h"
+
+namespace limber {
+
+/// Change of the angular velocity of a body that no torque acts on, in `h` s; `inertia` are its moments about its
+/// principal axes, kg·m², `spin` its angular velocity along them, rad/s. Euler's equations by the implicit midpoint:
+/// I·(w2 - w1) + h·w×I·w = 0 with w = (w1 + w2)/2, which keeps energy and the momentum's length, whatever the step.
+Vec3 gyroscopic_change(const Vec3& inertia, const Vec3& spin, double h);
+
+}  // namespace limber

@@ -1,0 +1,351 @@
+// The order of the work in one island, the guards, and what is written back.
+#include "sim/island_direct.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace limber {
+namespace {
+
+/// Exchanges of rows in force that a tree gets before its unsettled axes are swept instead.
+constexpr int kExchanges = 16;
+/// Rounds in which axes may still be given up once contacts are known.
+constexpr int kRounds = 8;
+/// Turns of a body in one step, rad: motors keep below the first; beyond the second, as far as Bullet turns a body
+/// exactly, locks are not bent.
+constexpr double kMostTurn = 0.5;
+constexpr double kMostBend = kPi / 4;
+/// Fastest bend, m/s: what flies apart is not pulled together in one step.
+constexpr double kFastestBend = 20;
+/// Partings below this are left alone, m.
+constexpr double kLeastBend = 1e-4;
+/// Bends that made locks drive are eased so often, a little more than a straight line between the two would say.
+constexpr int kEasings = 2;
+constexpr double kEasing = 0.95;
+/// Part of what locks took that they may give back, and the most of it, J.
+constexpr double kGivenBack = 0.75;
+constexpr double kMostGivenBack = 1e6;
+/// An island of at least so many trees with joints, none of more than so many bodies, is a crowd.
+constexpr int kCrowd = 4;
+constexpr int kSmallTree = 8;
+/// Faster than this no impulse of ours may make a body: m/s, rad/s.
+constexpr double kFastest = 1e5;
+/// More than this no step with contacts may give one, m/s: where laws contradict each other (a link that begins inside
+/// of what never moves), to meet them all takes absurd impulses, and the sweeps, which miss them, do better.
+constexpr double kMostPush = 150;
+
+Quat turned(const Vec3& way) {
+  const double angle = glm::length(way);
+  return angle < 1e-9 ? quat_identity() : quat_axis(way / angle, angle);
+}
+
+// A lock along an axis.
+bool bends(const JointConstraint::Row& row) {
+  return row.axis < 3 && row.softness == 0 && static_cast<double>(row.lower) <= -kTreeInfinity &&
+         static_cast<double>(row.upper) >= kTreeInfinity;
+}
+
+// What light bodies that strong motors drive do in free flight is wild, but no contradiction.
+bool contradicts(const TreeRows& system, int bodies, const IslandPools& pools) {
+  if (pools.contacts.size() == 0) return false;
+  for (int i = 0; i < bodies; ++i) {
+    if (glm::length(system.change(i).linear) > kMostPush) return true;
+  }
+  return false;
+}
+
+// The sweeps begin without the impulses of the step before, which only ours could hold in balance.
+void start_contacts_anew(IslandPools& pools) {
+  for (btConstraintArray* rows : {&pools.contacts, &pools.frictions, &pools.rollings}) {
+    for (int i = 0; i < rows->size(); ++i) {
+      btSolverConstraint& row = (*rows)[i];
+      const btScalar impulse = -std::exchange(row.m_appliedImpulse, btScalar(0));
+      btSolverBody& a = pools.bodies[row.m_solverBodyIdA];
+      btSolverBody& b = pools.bodies[row.m_solverBodyIdB];
+      a.internalApplyImpulse(row.m_contactNormal1 * a.internalGetInvMass(), row.m_angularComponentA, impulse);
+      b.internalApplyImpulse(row.m_contactNormal2 * b.internalGetInvMass(), row.m_angularComponentB, impulse);
+    }
+  }
+}
+
+}  // namespace
+
+void IslandDirect::start() { links_.clear(); }
+
+void IslandDirect::add_joint(JointConstraint& joint, int body_a, int body_b) {
+  links_.push_back({&joint, body_a, body_b, -1, 0, Vec3(0), Vec3(0)});
+}
+
+// Trees by themselves, contacts as they are; then what stands around them, until no law is broken.
+bool IslandDirect::settle() {
+  for (const Tree& t : trees_) {
+    if (!system_.settle(t.first, t.last, kExchanges)) return false;
+  }
+  collect_axes();
+  if (outer_.empty()) return finite();
+  system_.keep();
+  for (OuterRow& row : outer_) row.kept = row.impulse;
+  for (int round = 0; round < kRounds; ++round) {
+    if (!build_responses()) return false;
+    const bool pinned = give_up_pinned();
+    const double missed = pinned ? 0 : solve_outer();
+    int broken = pinned ? 1 : 0;
+    for (int t = 0; t < static_cast<int>(trees_.size()); ++t) {
+      const Tree& tree = trees_[at(t)];
+      if (!pinned) broken += system_.give_up_broken(tree.first, tree.last);
+    }
+    // too stiff to be solved: then every motor and limit that contacts feel gives way as far as its force says
+    if ((!(missed < kOuterMiss) || round == kRounds - 2) && give_up_touched() > 0) broken++;
+    if (broken == 0) return std::isfinite(missed) && finite();
+    // what was found with other rows in force must not stay
+    system_.go_back();
+    for (OuterRow& row : outer_) row.impulse = row.kept;
+    for (const Tree& t : trees_) {
+      if (!system_.refresh(t.first, t.last)) return false;
+    }
+    collect_axes();
+  }
+  return false;
+}
+
+// A body that would turn far in one step goes straight where it should go round: motors and limits of its tree ask for
+// less then. True when something changed.
+bool IslandDirect::limit_turns(const IslandPools& pools, double h) {
+  bool changed = false;
+  for (const Tree& t : trees_) {
+    double fastest = 0;
+    for (int i = t.first; i < t.last; ++i) {
+      const Spatial v = velocity(body_of_[at(i)], pools) + system_.change(i);
+      fastest = std::max(fastest, glm::length(v.angular));
+    }
+    if (!(fastest * h > kMostTurn)) continue;
+    for (int i = t.first; i < t.last; ++i) {
+      for (TreeRow& row : system_.rows(i)) {
+        if (!row.bounded() || row.constant()) continue;
+        row.velocity *= kMostTurn / (fastest * h);
+        changed = true;
+      }
+    }
+  }
+  return changed;
+}
+
+// Locked rows hold rates at the start of the step; bodies go round. What the two sides will have parted by its end is
+// asked for beforehand, so that joints meet where bodies arrive. True when something changed.
+bool IslandDirect::bend_locks(const IslandPools& pools, double h) {
+  double most = 0;
+  for (Link& link : links_) {
+    link.bend = bend_of(link, pools, h);
+    for (const JointConstraint::Row& row : link.joint->planned()) {
+      if (bends(row)) most = std::max(most, std::fabs(link.bend[row.axis] - link.bent[row.axis]));
+    }
+  }
+  if (most <= kLeastBend) return false;
+  for (Link& link : links_) ask_for_bend(link, h);
+  return true;
+}
+
+// Of the link's rows in a tree, or of those that close a loop.
+void IslandDirect::ask_for_bend(Link& link, double h) {
+  const std::span<const JointConstraint::Row> rows = link.joint->planned();
+  for (std::size_t r = 0; r < rows.size(); ++r) {
+    if (!bends(rows[r])) continue;
+    const double change = (link.bend[rows[r].axis] - link.bent[rows[r].axis]) / h;
+    if (link.node >= 0) {
+      system_.rows(link.node)[r].velocity -= change;
+    } else {
+      outer_[at(link.outer) + r].target -= change;
+    }
+  }
+  link.bent = link.bend;
+}
+
+// How far the two sides of a joint will part in this step, beyond what its rows know, along the parent-side axes, m.
+Vec3 IslandDirect::bend_of(const Link& link, const IslandPools& pools, double h) const {
+  const JointConstraint& joint = *link.joint;
+  const auto moving = [&](int body) {
+    const int node = node_of_[at(body)];
+    return node < 0 ? velocity(body, pools) : velocity(body, pools) + system_.change(node);
+  };
+  const Spatial a = moving(link.body_a);
+  const Spatial b = moving(link.body_b);
+  if (glm::length(a.angular) * h > kMostBend || glm::length(b.angular) * h > kMostBend) return link.bent;
+  const Vec3 arm_a = from_bt(joint.arm_a());
+  const Vec3 arm_b = from_bt(joint.arm_b());
+  Vec3 gap(0);
+  for (int k = 0; k < 3; ++k) gap += from_bt(joint.linear_axis(k)) * joint.value(k);
+  const Vec3 own_arm = arm_a - gap;
+  const Quat turn_a = turned(a.angular * h);
+  const Vec3 parted =
+      gap + (b.linear - a.linear) * h + (turned(b.angular * h) * arm_b - arm_b) - (turn_a * own_arm - own_arm);
+  const Vec3 drift = carried(b, arm_b).linear - carried(a, arm_a).linear;
+  Vec3 bend(0);
+  for (int k = 0; k < 3; ++k) {
+    const Vec3 axis = from_bt(joint.linear_axis(k));
+    bend[k] = std::clamp(glm::dot(turn_a * axis, parted) - glm::dot(axis, gap + drift * h), -kFastestBend * h,
+                         kFastestBend * h);
+  }
+  return bend;
+}
+
+// What locks gave or took (J): each impulse times the mean of its rate before and after the step. Locks of a machine do
+// no work.
+double IslandDirect::work_of_locks(const Tree& tree, const IslandPools& pools) const {
+  double work = 0;
+  for (int i = tree.first; i < tree.last; ++i) {
+    if (link_of_[at(i)] < 0) continue;
+    const Link& link = links_[at(link_of_[at(i)])];
+    const JointConstraint& joint = *link.joint;
+    const auto before = [&](int body) {
+      const btSolverBody& b = pools.bodies[body];
+      return Spatial{from_bt(b.m_linearVelocity), from_bt(b.m_angularVelocity)};
+    };
+    const Spatial a = before(link.body_a);
+    const Spatial b = before(link.body_b);
+    const Vec3 drift = carried(b, from_bt(joint.arm_b())).linear - carried(a, from_bt(joint.arm_a())).linear;
+    const Vec3 spin = b.angular - a.angular;
+    for (const TreeRow& row : system_.rows(i)) {
+      if (row.bounded() || !row.hard()) continue;
+      const double rate = row.axis < 3 ? glm::dot(from_bt(joint.linear_axis(row.axis)), drift)
+                                       : glm::dot(from_bt(joint.dual_axis(row.axis - 3)), spin);
+      work += row.impulse * (rate + system_.rate(i, row.axis)) / 2;
+    }
+  }
+  return work;
+}
+
+JointConstraint& IslandDirect::first_joint(const Tree& tree) const {
+  const int root = link_of_[at(tree.first)] < 0 ? tree.first + 1 : tree.first;
+  return *links_[at(link_of_[at(root)])].joint;
+}
+
+bool IslandDirect::passive(const Tree& tree) const {
+  if (tree.last - tree.first == 1 && link_of_[at(tree.first)] < 0) return false;
+  return !driven(tree);
+}
+
+bool IslandDirect::driven(const Tree& tree) const {
+  for (int i = tree.first; i < tree.last; ++i) {
+    for (const TreeRow& row : system_.rows(i)) {
+      if (row.mark == TreeRow::motor && row.upper > row.lower) return true;
+    }
+  }
+  return false;
+}
+
+// Where no motor drives, bends that would make locks drive become less. True when something changed.
+bool IslandDirect::ease_bends(const IslandPools& pools, double h) {
+  bool changed = false;
+  for (std::size_t t = 0; t < trees_.size(); ++t) {
+    const Tree& tree = trees_[t];
+    if (!passive(tree)) continue;
+    const double work = work_of_locks(tree, pools);
+    const double budget = first_joint(tree).taken_by_locks();
+    if (!(work > budget)) continue;
+    const double unbent = unbent_work_[t];
+    const double part = unbent < budget ? kEasing * (budget - unbent) / (work - unbent) : 0;
+    for (int i = tree.first; i < tree.last; ++i) {
+      if (link_of_[at(i)] < 0) continue;
+      Link& link = links_[at(link_of_[at(i)])];
+      changed = changed || link.bent != Vec3(0);
+      link.bend = link.bent * part;
+      ask_for_bend(link, h);
+    }
+  }
+  return changed;
+}
+
+// Many small trees that press on each other: sweeps do as well there, for less.
+bool IslandDirect::crowded(const IslandPools& pools) const {
+  int jointed = 0;
+  int largest = 0;
+  for (const Tree& t : trees_) {
+    if (link_of_[at(t.last - 1)] >= 0) jointed++;
+    largest = std::max(largest, t.last - t.first);
+  }
+  return jointed >= kCrowd && largest <= kSmallTree && pools.contacts.size() >= jointed;
+}
+
+bool IslandDirect::finite() const {
+  for (int i = 0; i < static_cast<int>(body_of_.size()); ++i) {
+    const Spatial& c = system_.change(i);
+    for (int k = 0; k < 3; ++k) {
+      if (!(std::fabs(c.linear[k]) < kFastest) || !(std::fabs(c.angular[k]) < kFastest)) return false;
+    }
+  }
+  return true;
+}
+
+bool IslandDirect::solve(IslandPools pools, const btContactSolverInfo& info) {
+  outer_.clear();
+  box_factors_ = 0;
+  fixed_outer_ = 0;
+  if (pools.contacts.size() + pools.frictions.size() + pools.rollings.size() > kMostContactRows) {
+    counts_.plain++;
+    return false;
+  }
+  bool solved = build_forest(pools);
+  if (solved && crowded(pools)) {
+    counts_.plain++;
+    return false;
+  }
+  if (solved) {
+    collect_contacts(pools);
+    collect_loops(pools);
+    fixed_outer_ = outer_.size();
+    const double h = static_cast<double>(info.m_timeStep);
+    solved = settle();
+    for (int pass = 0; pass < 3 && solved && limit_turns(pools, h); ++pass) solved = settle();
+    unbent_work_.clear();
+    for (const Tree& t : trees_) unbent_work_.push_back(passive(t) ? work_of_locks(t, pools) : 0);
+    for (int pass = 0; pass < 4 && solved && bend_locks(pools, h); ++pass) solved = settle();
+    for (int pass = 0; pass < kEasings && solved && ease_bends(pools, h); ++pass) solved = settle();
+  }
+  if (!solved || contradicts(system_, static_cast<int>(body_of_.size()), pools)) {
+    counts_.fallbacks++;
+    start_contacts_anew(pools);
+    for (const Link& link : links_) {
+      link.joint->forget_impulses();
+      link.joint->tree_memory().fill(0);
+    }
+    return false;
+  }
+  counts_.direct++;
+  for (const Tree& t : trees_) {
+    if (!passive(t)) continue;
+    double& taken = first_joint(t).taken_by_locks();
+    const double work = work_of_locks(t, pools);
+    taken = std::clamp(taken - (work < 0 ? kGivenBack : 1.0) * work, 0.0, kMostGivenBack);
+  }
+  write(pools);
+  push_apart(pools, info);
+  if (measured_) take_residuals(pools);
+  return true;
+}
+
+void IslandDirect::write(IslandPools& pools) {
+  for (std::size_t i = 0; i < body_of_.size(); ++i) {
+    btSolverBody& body = pools.bodies[body_of_[i]];
+    const Spatial& change = system_.change(static_cast<int>(i));
+    body.m_deltaLinearVelocity = to_bt(change.linear);
+    body.m_deltaAngularVelocity = to_bt(change.angular);
+  }
+  for (const OuterRow& row : outer_) {
+    if (row.contact != nullptr) row.contact->m_appliedImpulse = to_scalar(row.impulse);
+  }
+  for (const Link& link : links_) {
+    impulses_.clear();
+    if (link.node >= 0) {
+      for (const TreeRow& row : system_.rows(link.node)) impulses_.push_back(row.impulse);
+      link.joint->tree_memory() = system_.memory(link.node);
+    } else {
+      for (int r = 0; r < static_cast<int>(link.joint->planned().size()); ++r) {
+        impulses_.push_back(outer_[at(link.outer + r)].impulse);
+      }
+    }
+    link.joint->take_impulses(impulses_);
+  }
+}
+
+}  // namespace limber

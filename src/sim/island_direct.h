@@ -1,0 +1,158 @@
+// IslandDirect: one island's joints solved exactly, as trees; contacts and joints that close loops around them, with
+// the trees' response. docs/solver.md.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "sim/box_solver.h"
+#include "sim/bullet.h"
+#include "sim/joint_constraint.h"
+#include "sim/tree_rows.h"
+
+namespace limber {
+
+/// What Bullet set up for the island: read, and written to only when all is solved.
+struct IslandPools {
+  btAlignedObjectArray<btSolverBody>& bodies;
+  btConstraintArray& contacts;
+  btConstraintArray& frictions;
+  btConstraintArray& rollings;
+};
+
+/// Steps of islands with joints, by who solved them.
+struct DirectCounts {
+  std::uint64_t direct = 0;
+  std::uint64_t plain = 0;      ///< By rule: too many contacts, or a crowd of small trees.
+  std::uint64_t fallbacks = 0;  ///< Not solved to the end.
+};
+
+/// How far rows miss their laws, most of the last island solved: m/s, rad/s.
+struct DirectResiduals {
+  double locked = 0;
+  double bounded = 0;
+  double contact = 0;
+};
+
+/// [sim]
+class IslandDirect {
+ public:
+  void start();
+  /// A joint with its rows planned, and its two solver bodies.
+  void add_joint(JointConstraint& joint, int body_a, int body_b);
+  int joint_count() const { return static_cast<int>(links_.size()); }
+  /// False when the plain solver has to do it, with nothing written; where what was found is absurd, impulses of the
+  /// step before are taken back, too.
+  bool solve(IslandPools pools, const btContactSolverInfo& info);
+
+  const DirectCounts& counts() const { return counts_; }
+  /// Measured after each solve while asked for: it costs as much again.
+  void measure(bool on) { measured_ = on; }
+  const DirectResiduals& residuals() const { return residuals_; }
+
+ private:
+  struct Link {  // a joint between two solver bodies
+    JointConstraint* joint;
+    int body_a;
+    int body_b;
+    int node;   // that hangs on it; -1: it closes a loop
+    int outer;  // then: its first row in outer_
+    Vec3 bent;  // what was already asked of its locked linear axes, m
+    Vec3 bend;  // and what should be
+  };
+  struct Tree {
+    int first;
+    int last;
+  };
+  struct Side {  // what an outer row does to one body
+    int node = -1;
+    Spatial pull;
+  };
+  struct OuterRow {
+    Side a, b;
+    TreeRow* axis = nullptr;                // a row of a tree's axis instead
+    btSolverConstraint* contact = nullptr;  // where the impulse goes
+    double target = 0;                      // rate + softness·impulse, as changes from the start
+    double softness = 0;
+    double begun = 0;  // impulse when the stage began
+    double impulse = 0;
+    double kept = 0;   // impulse before the first round
+    double eases = 0;  // rate per impulse of the two bodies alone
+    double lower = 0;
+    double upper = 0;
+    int normal = -1;
+    double friction = 0;
+    double most = 0;
+    bool loop = false;
+  };
+
+  bool build_forest(const IslandPools& pools);
+  int root_of(int body);
+  bool grow(int body, int parent, int link, const IslandPools& pools);
+  bool add_node(int body, int parent, int link, const IslandPools& pools);
+  Spatial velocity(int body, const IslandPools& pools) const;
+
+  void collect_contacts(IslandPools& pools);
+  void add_contact(btSolverConstraint& row, int normal, double most);
+  void collect_loops(const IslandPools& pools);
+  void collect_axes();
+  double rate_of(const OuterRow& row) const;
+  double response_of(const OuterRow& row, int tree_a, int tree_b) const;
+  int tree_at(int node) const { return node < 0 ? -1 : tree_of_[static_cast<std::size_t>(node)]; }
+  void load(const OuterRow& row, double impulse);
+  void unload(const OuterRow& row);
+  void mark_paths();
+  bool build_responses();
+  bool give_up_pinned();
+  int give_up_touched();
+  double solve_outer();
+  bool settle();
+  bool limit_turns(const IslandPools& pools, double h);
+  bool bend_locks(const IslandPools& pools, double h);
+  void ask_for_bend(Link& link, double h);
+  Vec3 bend_of(const Link& link, const IslandPools& pools, double h) const;
+  double work_of_locks(const Tree& tree, const IslandPools& pools) const;
+  bool driven(const Tree& tree) const;
+  bool passive(const Tree& tree) const;
+  JointConstraint& first_joint(const Tree& tree) const;
+  bool ease_bends(const IslandPools& pools, double h);
+  void push_apart(IslandPools& pools, const btContactSolverInfo& info);
+  bool crowded(const IslandPools& pools) const;
+  bool finite() const;
+  void write(IslandPools& pools);
+  void take_residuals(const IslandPools& pools);
+
+  /// More contact and friction rows than this go to the plain solver: the dense response would cost more than it gains.
+  static constexpr int kMostContactRows = 360;
+  /// What outer rows may miss, m/s and rad/s, when they count as solved; and when they still will do.
+  static constexpr double kOuterTolerance = 1e-6;
+  static constexpr double kOuterMiss = 1e-2;
+  /// A contact is pinned when it answers to less than this part of what its bodies alone would.
+  static constexpr double kPinned = 1e-6;
+
+  TreeRows system_;
+  BoxSolver box_;
+  BoxSolver push_box_;
+  std::vector<Link> links_;
+  std::vector<Tree> trees_;
+  std::vector<int> tree_of_;  // node
+  std::vector<int> body_of_;  // node
+  std::vector<int> link_of_;  // node; -1: floats
+  std::vector<int> node_of_;  // body; -1: static
+  std::vector<int> group_;    // body: union-find
+  std::vector<int> link_start_;
+  std::vector<int> body_links_;
+  std::vector<int> stack_;
+  std::vector<OuterRow> outer_;
+  std::vector<unsigned char> path_;
+  std::vector<double> impulses_;
+  std::vector<int> push_rows_;
+  std::size_t fixed_outer_ = 0;      // contacts and loops; behind them axes that were given up
+  std::vector<double> unbent_work_;  // tree: of its locks, unbent, J
+  std::uint64_t box_factors_ = 0;    // that box_ has the responses of
+  bool measured_ = false;
+  DirectCounts counts_;
+  DirectResiduals residuals_;
+};
+
+}  // namespace limber

@@ -1,0 +1,290 @@
+// What stands around the trees: contacts, friction, joints that close loops, and axes whose row in force did not
+// settle. All are solved together, against the response of the trees.
+#include <algorithm>
+#include <cmath>
+
+#include "sim/island_direct.h"
+
+namespace limber {
+namespace {
+
+Spatial pull_of(const btVector3& linear, const btVector3& angular) { return {from_bt(linear), from_bt(angular)}; }
+
+}  // namespace
+
+void IslandDirect::add_contact(btSolverConstraint& row, int normal, double most) {
+  OuterRow out;
+  out.a = {node_of_[at(row.m_solverBodyIdA)], pull_of(row.m_contactNormal1, row.m_relpos1CrossNormal)};
+  out.b = {node_of_[at(row.m_solverBodyIdB)], pull_of(row.m_contactNormal2, row.m_relpos2CrossNormal)};
+  const double step = static_cast<double>(row.m_jacDiagABInv);
+  out.contact = &row;
+  out.eases = step > 0 ? 1 / step : 0;
+  out.target = step > 0 ? static_cast<double>(row.m_rhs) / step : 0;
+  out.softness = step > 0 ? static_cast<double>(row.m_cfm) / step : 0;
+  out.impulse = static_cast<double>(row.m_appliedImpulse);
+  out.lower = static_cast<double>(row.m_lowerLimit);
+  out.upper = static_cast<double>(row.m_upperLimit);
+  out.normal = normal;
+  out.friction = static_cast<double>(row.m_friction);
+  out.most = most;
+  outer_.push_back(out);
+}
+
+void IslandDirect::collect_contacts(IslandPools& pools) {
+  for (int i = 0; i < pools.contacts.size(); ++i) add_contact(pools.contacts[i], -1, 0);
+  for (int i = 0; i < pools.frictions.size(); ++i) {
+    add_contact(pools.frictions[i], pools.frictions[i].m_frictionIndex, 0);
+  }
+  for (int i = 0; i < pools.rollings.size(); ++i) {
+    // Bullet's: bounded by its own coefficient too
+    add_contact(pools.rollings[i], pools.rollings[i].m_frictionIndex,
+                static_cast<double>(pools.rollings[i].m_friction));
+  }
+}
+
+void IslandDirect::collect_loops(const IslandPools& pools) {
+  for (Link& link : links_) {
+    if (link.node >= 0) continue;
+    link.outer = static_cast<int>(outer_.size());
+    for (const JointConstraint::Row& row : link.joint->planned()) {
+      const JointConstraint::Jacobian j = link.joint->jacobian(row.axis);
+      OuterRow out;
+      out.loop = true;
+      out.a = {node_of_[at(link.body_a)], pull_of(-j.linear, j.angular_a)};
+      out.b = {node_of_[at(link.body_b)], pull_of(j.linear, j.angular_b)};
+      out.target = static_cast<double>(row.velocity) - dot(out.a.pull, velocity(link.body_a, pools)) -
+                   dot(out.b.pull, velocity(link.body_b, pools));
+      out.softness = static_cast<double>(row.softness);
+      out.lower = static_cast<double>(row.lower);
+      out.upper = static_cast<double>(row.upper);
+      outer_.push_back(out);
+    }
+  }
+}
+
+// Behind contacts and loops: the rows of axes that were given up.
+void IslandDirect::collect_axes() {
+  outer_.resize(fixed_outer_);
+  for (TreeRow& row : system_.rows()) {
+    if (row.status != TreeRow::outer) continue;
+    OuterRow out;
+    out.axis = &row;
+    out.a.node = row.node;
+    out.softness = row.softness;
+    out.impulse = row.impulse;
+    out.lower = row.lower;
+    out.upper = row.upper;
+    outer_.push_back(out);
+  }
+}
+
+// Present rate, as a change from the start.
+double IslandDirect::rate_of(const OuterRow& row) const {
+  double rate = 0;
+  for (const Side* side : {&row.a, &row.b}) {
+    if (side->node >= 0) rate += dot(side->pull, system_.change(side->node));
+  }
+  return rate;
+}
+
+void IslandDirect::load(const OuterRow& row, double impulse) {
+  if (row.axis != nullptr) {
+    system_.trees.node(row.axis->node).ask[row.axis->axis] = impulse;
+    return;
+  }
+  for (const Side* side : {&row.a, &row.b}) {
+    if (side->node >= 0) system_.trees.node(side->node).load += side->pull * impulse;
+  }
+}
+
+void IslandDirect::unload(const OuterRow& row) {
+  if (row.axis != nullptr) system_.trees.node(row.axis->node).ask[row.axis->axis] = 0;
+  for (const Side* side : {&row.a, &row.b}) {
+    if (side->node >= 0) system_.trees.node(side->node).load = {};
+  }
+}
+
+// What the last respond() of these two trees gave a row.
+double IslandDirect::response_of(const OuterRow& row, int tree_a, int tree_b) const {
+  const auto moved = [&](int node) { return node >= 0 && (tree_at(node) == tree_a || tree_at(node) == tree_b); };
+  if (row.axis != nullptr) return moved(row.a.node) ? system_.trees.node(row.a.node).rate[row.axis->axis] : 0;
+  double rate = 0;
+  for (const Side* side : {&row.a, &row.b}) {
+    if (moved(side->node)) rate += dot(side->pull, system_.trees.node(side->node).change);
+  }
+  return rate;
+}
+
+void IslandDirect::mark_paths() {
+  path_.assign(body_of_.size(), 0);
+  for (const OuterRow& row : outer_) {
+    for (const Side* side : {&row.a, &row.b}) {
+      for (int n = side->node; n >= 0 && path_[at(n)] == 0; n = system_.trees.node(n).parent) path_[at(n)] = 1;
+    }
+  }
+}
+
+bool IslandDirect::build_responses() {
+  if (box_factors_ == system_.factors() && box_.size() == static_cast<int>(outer_.size())) return true;
+  box_factors_ = system_.factors();
+  mark_paths();
+  const int count = static_cast<int>(outer_.size());
+  box_.start(count);
+  for (int i = 0; i < system_.trees.size(); ++i) {
+    system_.trees.node(i).ask.fill(0);
+    system_.trees.node(i).load = {};
+  }
+  for (int i = 0; i < count; ++i) {
+    const OuterRow& row = outer_[at(i)];
+    const int tree_a = tree_at(row.a.node);
+    const int tree_b = tree_at(row.b.node);
+    load(row, 1);
+    for (const int tree : {tree_a, tree_b == tree_a ? -1 : tree_b}) {
+      if (tree >= 0) system_.trees.respond(trees_[at(tree)].first, trees_[at(tree)].last, path_.data());
+    }
+    unload(row);
+    for (int k = i; k < count; ++k) {
+      const OuterRow& other = outer_[at(k)];
+      const int a = tree_at(other.a.node);
+      const int b = tree_at(other.b.node);
+      const bool touches = (a >= 0 && (a == tree_a || a == tree_b)) || (b >= 0 && (b == tree_a || b == tree_b));
+      if (touches) box_.response(i, k) = box_.response(k, i) = response_of(other, tree_a, tree_b);
+    }
+    box_.response(i, i) += row.softness;
+    if (!std::isfinite(box_.response(i, i))) return false;
+  }
+  return true;
+}
+
+// Contacts of a body whose every motion motors prescribe: no impulse answers, motors must.
+bool IslandDirect::give_up_pinned() {
+  int given_up = 0;
+  for (int i = 0; i < box_.size(); ++i) {
+    const OuterRow& row = outer_[at(i)];
+    if (row.contact == nullptr || row.normal >= 0 || box_.response(i, i) > kPinned * row.eases) continue;
+    for (const int tree : {tree_at(row.a.node), tree_at(row.b.node)}) {
+      if (tree >= 0) given_up += system_.give_up_all(trees_[at(tree)].first, trees_[at(tree)].last);
+    }
+  }
+  return given_up > 0;
+}
+
+int IslandDirect::give_up_touched() {
+  int given_up = 0;
+  for (const OuterRow& row : outer_) {
+    for (const int tree : {tree_at(row.a.node), tree_at(row.b.node)}) {
+      if (tree >= 0) given_up += system_.give_up_all(trees_[at(tree)].first, trees_[at(tree)].last);
+    }
+  }
+  return given_up;
+}
+
+// With the responses at hand: solves for all outer rows, and lets the trees follow. Returns what a row still misses.
+double IslandDirect::solve_outer() {
+  for (int i = 0; i < box_.size(); ++i) {
+    OuterRow& row = outer_[at(i)];
+    row.begun = row.axis != nullptr ? row.axis->impulse : row.impulse;
+    box_.row(i) = {
+        row.axis != nullptr ? system_.residual(*row.axis) : row.target - rate_of(row) - row.softness * row.impulse,
+        row.begun,
+        row.lower,
+        row.upper,
+        row.normal,
+        row.friction,
+        row.most};
+  }
+  const double missed = box_.solve(kOuterTolerance);
+  for (int i = 0; i < box_.size(); ++i) {
+    OuterRow& row = outer_[at(i)];
+    row.impulse = box_.row(i).impulse;
+    const double change = row.impulse - row.begun;
+    if (row.axis != nullptr) {
+      system_.push(*row.axis, change);
+    } else {
+      load(row, change);
+    }
+  }
+  for (const Tree& t : trees_) system_.correct(t.first, t.last);
+  return missed;
+}
+
+// Penetration is repaired by moving bodies apart, once, without leaving them a velocity (Bullet's split impulse): here
+// joints hold while it is done.
+void IslandDirect::push_apart(IslandPools& pools, const btContactSolverInfo& info) {
+  if (!info.m_splitImpulse || info.m_splitImpulseTurnErp <= 0) return;
+  const auto pushes = [](const OuterRow& row) { return row.contact != nullptr && row.normal < 0; };
+  const auto wants = [](const OuterRow& row) {
+    const double step = static_cast<double>(row.contact->m_jacDiagABInv);
+    return step > 0 ? static_cast<double>(row.contact->m_rhsPenetration) / step : 0;
+  };
+  if (std::none_of(outer_.begin(), outer_.end(), [&](const OuterRow& r) { return pushes(r) && wants(r) > 0; })) return;
+  for (OuterRow& row : outer_) row.begun = 0;
+  push_rows_.clear();
+  for (int i = 0; i < box_.size(); ++i) {
+    const OuterRow& row = outer_[at(i)];
+    if (pushes(row) || (row.loop && row.lower < -kTreeInfinity && row.upper > kTreeInfinity)) push_rows_.push_back(i);
+  }
+  const int count = static_cast<int>(push_rows_.size());
+  push_box_.start(count);
+  for (int i = 0; i < count; ++i) {
+    const OuterRow& row = outer_[at(push_rows_[at(i)])];
+    BoxSolver::Row& box = push_box_.row(i);
+    box.left = row.loop ? 0 : wants(row);
+    box.lower = row.loop ? row.lower : 0;
+    box.upper = row.upper;
+    for (int k = 0; k < count; ++k) push_box_.response(i, k) = box_.response(push_rows_[at(i)], push_rows_[at(k)]);
+  }
+  push_box_.solve(kOuterTolerance);
+  for (int i = 0; i < system_.trees.size(); ++i) {
+    system_.trees.node(i).ask.fill(0);
+    system_.trees.node(i).load = {};
+  }
+  for (int i = 0; i < count; ++i) load(outer_[at(push_rows_[at(i)])], push_box_.row(i).impulse);
+  const double turn = static_cast<double>(info.m_splitImpulseTurnErp);  // Bullet will multiply with it
+  for (const Tree& t : trees_) system_.trees.respond(t.first, t.last);
+  for (std::size_t i = 0; i < body_of_.size(); ++i) {
+    const Spatial& change = system_.trees.node(static_cast<int>(i)).change;
+    pools.bodies[body_of_[i]].m_pushVelocity = to_bt(change.linear);
+    pools.bodies[body_of_[i]].m_turnVelocity = to_bt(change.angular / turn);
+  }
+}
+
+// Natural residuals of all rows, at the velocities that were found.
+void IslandDirect::take_residuals(const IslandPools& pools) {
+  residuals_ = {};
+  const auto miss = [](double left, double impulse, double lower, double upper, double eases) {
+    const double after = std::clamp(impulse + left / eases, lower, std::max(lower, upper));
+    return std::fabs(after - impulse) * eases;
+  };
+  // from the bodies' velocities, not from what the solver believes of its axes
+  const auto moving = [&](int body) {
+    const int node = node_of_[at(body)];
+    return node < 0 ? velocity(body, pools) : velocity(body, pools) + system_.change(node);
+  };
+  for (const Link& link : links_) {
+    if (link.node < 0) continue;
+    const Spatial a = moving(link.body_a);
+    const Spatial b = moving(link.body_b);
+    for (const TreeRow& row : system_.rows(link.node)) {
+      const JointConstraint::Jacobian j = link.joint->jacobian(row.axis);
+      const double rate = dot(pull_of(-j.linear, j.angular_a), a) + dot(pull_of(j.linear, j.angular_b), b);
+      const TreeNode& n = system_.trees.node(row.node);
+      const double eases = 1 / dot(n.axis[row.axis], n.inertia * n.axis[row.axis]) + row.softness;
+      const double m = miss(row.velocity - row.softness * row.impulse - rate, row.impulse, row.lower, row.upper, eases);
+      double& most = row.bounded() ? residuals_.bounded : residuals_.locked;
+      most = std::max(most, m);
+    }
+  }
+  for (int i = 0; i < static_cast<int>(outer_.size()); ++i) {
+    const OuterRow& row = outer_[at(i)];
+    if (row.axis != nullptr) continue;
+    const double reach = row.normal < 0 ? 0 : row.friction * std::max(outer_[at(row.normal)].impulse, 0.0);
+    const double bound = row.most > 0 ? std::min(reach, row.most) : reach;
+    const double left = row.target - rate_of(row) - row.softness * row.impulse;
+    const double m = miss(left, row.impulse, row.normal < 0 ? row.lower : -bound, row.normal < 0 ? row.upper : bound,
+                          std::max(box_.response(i, i), 1e-9));
+    residuals_.contact = std::max(residuals_.contact, m);
+  }
+}
+
+}  // namespace limber

@@ -1,0 +1,278 @@
+// The two players: stock Bullet with its six-axis spring joint, and an IslandWorld with our joints.
+#include "sim/raw_scene.h"
+
+#include <algorithm>
+#include <cmath>
+#include <deque>
+#include <utility>
+
+#include "sim/island_world.h"
+
+namespace limber {
+namespace {
+
+constexpr btScalar kStockBoxMargin = btScalar(0.05);  // Bullet's own; the variable behind it is shared by all worlds
+constexpr int kGround = 1;
+constexpr int kPart = 2;
+
+// What both kinds of world share: the parts.
+template <class World>
+class Player : public RawPlayer {
+ public:
+  explicit Player(const RawScene& raw) : scene(raw) {}
+  Pose pose(int part) const override { return from_bt(bodies[static_cast<std::size_t>(part)]->getWorldTransform()); }
+
+  double energy() const override {
+    double sum = 0;
+    for (const auto& body : bodies) {
+      if (body->isStaticObject()) continue;
+      const double mass = 1 / static_cast<double>(body->getInvMass());
+      const Vec3 v = from_bt(body->getLinearVelocity());
+      const Vec3 spin = from_bt(body->getWorldTransform().getBasis().transpose() * body->getAngularVelocity());
+      const Vec3 inverse = from_bt(body->getInvInertiaDiagLocal());
+      sum += mass * (glm::dot(v, v) / 2 - glm::dot(scene.gravity, from_bt(body->getWorldTransform().getOrigin())));
+      for (int i = 0; i < 3; ++i) sum += spin[i] * spin[i] / inverse[i] / 2;
+    }
+    return sum;
+  }
+
+ protected:
+  void build(World& world) {
+    world.setGravity(to_bt(scene.gravity));
+    world.getSolverInfo().m_numIterations = scene.iterations;
+    world.getSolverInfo().m_solverMode = SOLVER_USE_WARMSTARTING | SOLVER_SIMD | SOLVER_USE_2_FRICTION_DIRECTIONS;
+    world.getSolverInfo().m_splitImpulse = 1;
+    world.getSolverInfo().m_splitImpulsePenetrationThreshold = 0;
+    for (const RawPart& part : scene.parts) add_part(world, part);
+    if (!scene.floor) return;
+    floor = std::make_unique<btRigidBody>(btRigidBody::btRigidBodyConstructionInfo(0, nullptr, &plane));
+    floor->setFriction(1);
+    world.addRigidBody(floor.get(), kGround, -1);
+  }
+  void add_part(World& world, const RawPart& part) {
+    if (part.size.y > 0) {
+      shapes.push_back(std::make_unique<btBoxShape>(to_bt(part.size * 0.5)));
+    } else {
+      shapes.push_back(std::make_unique<btSphereShape>(to_scalar(part.size.x)));
+    }
+    btVector3 inertia(0, 0, 0);
+    if (part.mass > 0) shapes.back()->calculateLocalInertia(to_scalar(part.mass), inertia);
+    btRigidBody::btRigidBodyConstructionInfo info(to_scalar(part.mass), nullptr, shapes.back().get(), inertia);
+    info.m_startWorldTransform = to_bt(part.pose);
+    info.m_friction = btScalar(0.8);
+    bodies.push_back(std::make_unique<btRigidBody>(info));
+    bodies.back()->setActivationState(DISABLE_DEACTIVATION);
+    world.addRigidBody(bodies.back().get(), part.size.y > 0 ? kPart : kGround,
+                       scene.self_collision || part.size.y == 0 ? -1 : kGround);
+  }
+  void pull() {
+    if (scene.attract <= 0) return;
+    for (const auto& body : bodies) {
+      if (body->isStaticObject()) continue;
+      const Vec3 way = Vec3(0, 0, 1) - from_bt(body->getWorldTransform().getOrigin());
+      body->applyCentralForce(to_bt(way * scene.attract) - body->getLinearVelocity() * btScalar(0.3));
+    }
+  }
+  btRigidBody& body(int part) { return *bodies[static_cast<std::size_t>(part)]; }
+  // Frame of a joint in a part: `column` of its basis lies along the axis.
+  btTransform frame(const RawJoint& joint, int part, int column) const {
+    const Vec3 a = normalized(joint.axis);
+    const Vec3 b = normalized(glm::cross(a, std::fabs(a.x) < 0.7 ? Vec3(1, 0, 0) : Vec3(0, 1, 0)));
+    const Vec3 c = glm::cross(a, b);
+    btMatrix3x3 m;
+    for (int r = 0; r < 3; ++r) {
+      m[r][column] = to_scalar(a[r]);
+      m[r][(column + 1) % 3] = to_scalar(b[r]);
+      m[r][(column + 2) % 3] = to_scalar(c[r]);
+    }
+    const RawPart& p = scene.parts[static_cast<std::size_t>(part)];
+    return to_bt(p.pose).inverse() * btTransform(m, to_bt(joint.place));
+  }
+  void look(RawFigures& f, const RawJoint& joint, const btTransform& a, const btTransform& b, double angle) const {
+    f.gap = std::max(f.gap, glm::length(from_bt(a.getOrigin() - b.getOrigin())));
+    if (joint.force > 0) f.servo_error = std::max(f.servo_error, std::fabs(angle - joint.target(time)));
+    if (joint.lower <= joint.upper) {
+      f.limit_passed = std::max({f.limit_passed, angle - joint.upper, joint.lower - angle});
+    }
+  }
+  void look_at_parts(RawFigures& f) const {
+    for (const auto& body : bodies) {
+      const double speed = glm::length(from_bt(body->getLinearVelocity()));
+      f.finite = f.finite && speed < 1e5 && is_finite(from_bt(body->getWorldTransform().getOrigin()));
+      f.speed = std::max(f.speed, speed);
+    }
+  }
+
+  RawScene scene;
+  double time = 0;
+  std::deque<std::unique_ptr<btCollisionShape>> shapes;
+  std::deque<std::unique_ptr<btRigidBody>> bodies;
+  std::unique_ptr<btRigidBody> floor;
+  btStaticPlaneShape plane{btVector3(0, 0, 1), 0};
+};
+
+class StockPlayer : public Player<btDiscreteDynamicsWorld> {
+ public:
+  // null: Bullet's own choice of solver
+  StockPlayer(const RawScene& raw, btConstraintSolver* solver)
+      : Player(raw), world_(&dispatcher_, &broadphase_, solver != nullptr ? solver : &solver_, &configuration_) {
+    const btScalar margin = std::exchange(gDbvtMargin, kStockBoxMargin);
+    build(world_);
+    for (const RawJoint& joint : scene.joints) add_joint(joint);
+    gDbvtMargin = margin;
+  }
+  ~StockPlayer() override {
+    for (const auto& joint : joints_) world_.removeConstraint(joint.get());
+    for (const auto& body : bodies) world_.removeRigidBody(body.get());
+    if (floor) world_.removeRigidBody(floor.get());
+  }
+  void step() override {
+    const btScalar margin = std::exchange(gDbvtMargin, kStockBoxMargin);
+    for (std::size_t i = 0; i < joints_.size(); ++i) {
+      if (scene.joints[i].force > 0) joints_[i]->setServoTarget(3, to_scalar(-scene.joints[i].target(time)));
+    }
+    pull();
+    world_.stepSimulation(to_scalar(scene.step), 0);
+    time += scene.step;
+    gDbvtMargin = margin;
+  }
+  RawFigures figures() const override {
+    RawFigures f;
+    for (std::size_t i = 0; i < joints_.size(); ++i) {
+      btGeneric6DofSpring2Constraint& j = *joints_[i];
+      j.calculateTransforms();
+      look(f, scene.joints[i], j.getRigidBodyA().getWorldTransform() * j.getFrameOffsetA(),
+           j.getRigidBodyB().getWorldTransform() * j.getFrameOffsetB(), -static_cast<double>(j.getAngle(0)));
+    }
+    look_at_parts(f);
+    return f;
+  }
+
+ private:
+  // turns about x, the outermost of Bullet's order: its angles are the negative of ours
+  void add_joint(const RawJoint& joint) {
+    auto made = std::make_unique<btGeneric6DofSpring2Constraint>(
+        body(joint.parent), body(joint.child), frame(joint, joint.parent, 0), frame(joint, joint.child, 0));
+    for (int axis = 0; axis < 6; ++axis) made->setLimit(axis, 0, 0);
+    const bool free = joint.lower > joint.upper;
+    if (!joint.fixed) made->setLimit(3, free ? 1 : to_scalar(-joint.upper), free ? -1 : to_scalar(-joint.lower));
+    if (joint.force > 0) {
+      made->enableMotor(3, true);
+      made->setServo(3, true);
+      made->setTargetVelocity(3, to_scalar(joint.speed));
+      made->setMaxMotorForce(3, to_scalar(joint.force));
+      if (scene.servo_share > 0) made->setParam(BT_CONSTRAINT_ERP, to_scalar(scene.servo_share), 3);
+    }
+    if (joint.stiffness > 0) {
+      made->enableSpring(3, true);
+      made->setStiffness(3, to_scalar(joint.stiffness));
+      made->setDamping(3, to_scalar(joint.damping));
+      made->setEquilibriumPoint(3, 0);
+    }
+    world_.addConstraint(made.get(), true);
+    joints_.push_back(std::move(made));
+  }
+
+  btDefaultCollisionConfiguration configuration_;
+  btCollisionDispatcher dispatcher_{&configuration_};
+  btDbvtBroadphase broadphase_;
+  btSequentialImpulseConstraintSolver solver_;
+  btDiscreteDynamicsWorld world_;
+  std::vector<std::unique_ptr<btGeneric6DofSpring2Constraint>> joints_;
+};
+
+class IslandPlayer : public Player<IslandWorld> {
+ public:
+  IslandPlayer(const RawScene& raw, bool direct) : Player(raw), world_(WorldSetup{}) {
+    world_.set_direct(direct);
+    world_.direct().measure(scene.measure);
+    build(world_);
+    for (const RawJoint& joint : scene.joints) add_joint(joint);
+  }
+  ~IslandPlayer() override {
+    for (const auto& joint : joints_) world_.removeConstraint(joint.get());
+    for (const auto& body : bodies) world_.removeRigidBody(body.get());
+    if (floor) world_.removeRigidBody(floor.get());
+  }
+  void step() override {
+    for (std::size_t i = 0; i < joints_.size(); ++i) {
+      const RawJoint& j = scene.joints[i];
+      if (j.force > 0) joints_[i]->set_goal(5, j.target(time), 0, j.speed);
+    }
+    pull();
+    world_.step(scene.step, 1);
+    time += scene.step;
+    const DirectResiduals& r = world_.direct().residuals();
+    worst_ = {0,
+              0,
+              0,
+              std::max(worst_.locked, r.locked),
+              std::max(worst_.bounded, r.bounded),
+              std::max(worst_.contact, r.contact)};
+  }
+  RawFigures figures() const override {
+    RawFigures f;
+    for (std::size_t i = 0; i < joints_.size(); ++i) {
+      const JointConstraint& j = *joints_[i];
+      look(f, scene.joints[i], to_bt(j.parent_frame()), to_bt(j.child_frame()), j.value(5));
+    }
+    look_at_parts(f);
+    return f;
+  }
+  Direct direct() const override {
+    Direct d = worst_;
+    const DirectCounts c = world_.direct_counts();
+    d.direct = static_cast<double>(c.direct);
+    d.plain = static_cast<double>(c.plain);
+    d.fallbacks = static_cast<double>(c.fallbacks);
+    return d;
+  }
+
+ private:
+  void add_joint(const RawJoint& joint) {
+    auto made = std::make_unique<JointConstraint>(body(joint.parent), body(joint.child), frame(joint, joint.parent, 2),
+                                                  frame(joint, joint.child, 2));
+    AxisSettings s;
+    s.lower = static_cast<float>(joint.fixed ? 0 : joint.lower);
+    s.upper = static_cast<float>(joint.fixed ? 0 : joint.upper);
+    s.velocity = static_cast<float>(joint.speed);
+    s.max_force = static_cast<float>(joint.force);
+    s.stiffness = static_cast<float>(joint.stiffness);
+    s.spring_damping = static_cast<float>(joint.damping);
+    if (joint.force > 0) s.drive = AxisDrive::servo;
+    if (joint.stiffness > 0) s.drive = AxisDrive::spring;
+    made->set_axis(5, s);
+    world_.addConstraint(made.get());
+    joints_.push_back(std::move(made));
+  }
+
+  IslandWorld world_;
+  Direct worst_;
+  std::vector<std::unique_ptr<JointConstraint>> joints_;
+};
+
+}  // namespace
+
+double RawJoint::target(double time) const {
+  if (square) return hold + ((static_cast<int>(time) & 1) != 0 ? amplitude : -amplitude);
+  return hold + std::min(1.0, 2 * time) * amplitude * std::sin(2 * kPi * frequency * time + phase);
+}
+
+void RawFigures::take(const RawFigures& o) {
+  gap = std::max(gap, o.gap);
+  servo_error = std::max(servo_error, o.servo_error);
+  limit_passed = std::max(limit_passed, o.limit_passed);
+  speed = std::max(speed, o.speed);
+  finite = finite && o.finite;
+}
+
+std::unique_ptr<RawPlayer> RawPlayer::make(const RawScene& scene, RawSolver solver) {
+  if (solver == RawSolver::stock) return std::make_unique<StockPlayer>(scene, nullptr);
+  return std::make_unique<IslandPlayer>(scene, solver == RawSolver::direct);
+}
+
+std::unique_ptr<RawPlayer> RawPlayer::make_stock(const RawScene& scene, btConstraintSolver& solver) {
+  return std::make_unique<StockPlayer>(scene, &solver);
+}
+
+}  // namespace limber

@@ -1,0 +1,62 @@
+// Team: each piece once, whoever takes it, round after round. Meant for the thread sanitizer too.
+#include "base/team.h"
+
+#include <gtest/gtest.h>
+
+#include <vector>
+
+namespace limber {
+namespace {
+
+TEST(Team, EachPieceIsDoneOnceByAMember) {
+  for (const int members : {1, 2, 3, 8}) {
+    Team team(members);
+    EXPECT_EQ(team.members(), members);
+    // plain numbers: what a member wrote must be there when run() returns
+    std::vector<int> done(100), by(100, -1);
+    for (int round = 1; round <= 2000; round++) {
+      const int pieces = round % 101;
+      team.run(pieces, [&](int piece, int member) {
+        done[static_cast<std::size_t>(piece)]++;
+        by[static_cast<std::size_t>(piece)] = member;
+      });
+    }
+    for (int piece = 0; piece < 100; piece++) {
+      int rounds = 0;
+      for (int round = 1; round <= 2000; round++) rounds += round % 101 > piece ? 1 : 0;
+      EXPECT_EQ(done[static_cast<std::size_t>(piece)], rounds) << members << " " << piece;
+      EXPECT_GE(by[static_cast<std::size_t>(piece)], 0);
+      EXPECT_LT(by[static_cast<std::size_t>(piece)], members);
+    }
+  }
+}
+
+TEST(Team, EachMemberHasWhatIsItsOwn) {
+  Team team(4);
+  std::vector<long> sum(4);
+  for (int round = 0; round < 500; round++) {
+    team.run(50, [&](int piece, int member) { sum[static_cast<std::size_t>(member)] += piece; });
+  }
+  EXPECT_EQ(sum[0] + sum[1] + sum[2] + sum[3], 500L * 50 * 49 / 2);
+}
+
+TEST(Team, WithoutWorkItEnds) {
+  for (int i = 0; i < 50; i++) Team(8).run(0, [](int, int) { ADD_FAILURE(); });
+}
+
+// every piece waits for another member's: all of them must be at work at once
+TEST(Team, MembersWorkSideBySide) {
+  constexpr int kMembers = 3;
+  Team team(kMembers);
+  for (int round = 0; round < 20; round++) {
+    std::atomic<int> here{0};
+    team.run(kMembers, [&](int, int) {
+      here++;
+      while (here < kMembers) std::this_thread::yield();
+    });
+    EXPECT_EQ(here, kMembers);
+  }
+}
+
+}  // namespace
+}  // namespace limber

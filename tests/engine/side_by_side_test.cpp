@@ -1,0 +1,41 @@
+// Islands solved by several threads: the same state, to the bit, for any number of them.
+#include <gtest/gtest.h>
+
+#include "show.h"
+
+namespace limber::engine_test {
+namespace {
+
+// arms that sway, some of them in each other's way, and heaps of boxes on the same floor
+constexpr const char* kCrowd = R"(
+sim:add_body("floor"):add_part("floor", sim:add_plane_shape("ground"))
+local arm = sim:load_urdf(ROOT .. "/urdf/arm6.urdf", { name = "arm1" })
+for i = 2, 12 do arm:copy("arm" .. i, { position = vec3(0.3 * (i % 4), i, 0) }) end
+for i, body in ipairs(sim.bodies) do
+  if body.name ~= "floor" then body:add_behavior("random_force", "gust", { parts = "*" }) end
+end
+local box = sim:add_box_shape("box", vec3(0.1, 0.1, 0.1))
+for i = 0, 59 do
+  sim:add_body("box" .. i):add_part("p", box, { position = vec3(-2 - i % 3, 0.03 * i, 0.06 + 0.11 * math.floor(i / 6)) })
+end
+)";
+
+std::uint64_t hash_with(int threads, const char* solver) {
+  const SceneFile file("local ROOT = \"" LIMBER_SOURCE_DIR "\"\n" + std::string(kCrowd) + "sim.solver = \"" + solver +
+                       "\"\n");
+  EngineOptions options = fast_options(file.path());
+  options.threads = threads;
+  Show show(options);
+  show.ticks(150);
+  return show.engine.state_hash();
+}
+
+TEST(SideBySide, AnyNumberOfThemComesToTheSameState) {
+  for (const char* solver : {"iterative", "direct"}) {
+    const std::uint64_t alone = hash_with(1, solver);
+    for (const int threads : {2, 3, 8}) EXPECT_EQ(hash_with(threads, solver), alone) << solver << " " << threads;
+  }
+}
+
+}  // namespace
+}  // namespace limber::engine_test

@@ -1,0 +1,115 @@
+// The box solver against its laws, on random problems, and against a block on the floor.
+#include "sim/box_solver.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <random>
+#include <vector>
+
+namespace limber {
+namespace {
+
+// What the rows miss, calculated anew from the whole matrix.
+double missed(BoxSolver& box, const std::vector<double>& left, const std::vector<double>& begun) {
+  double most = 0;
+  for (int i = 0; i < box.size(); ++i) {
+    const BoxSolver::Row& r = box.row(i);
+    double rest = left[static_cast<std::size_t>(i)];
+    for (int k = 0; k < box.size(); ++k) {
+      rest -= box.response(i, k) * (box.row(k).impulse - begun[static_cast<std::size_t>(k)]);
+    }
+    double lower = r.lower;
+    double upper = r.upper;
+    if (r.normal >= 0) {
+      upper = r.friction * std::max(box.row(r.normal).impulse, 0.0);
+      if (r.most > 0) upper = std::min(upper, r.most);
+      lower = -upper;
+    }
+    EXPECT_GE(r.impulse, lower - 1e-9) << i;
+    EXPECT_LE(r.impulse, upper + 1e-9) << i;
+    const double own = box.response(i, i);
+    most = std::max(most, std::fabs(std::clamp(r.impulse + rest / own, lower, upper) - r.impulse) * own);
+  }
+  return most;
+}
+
+TEST(BoxSolver, MeetsEveryLawOfRandomProblems) {
+  for (unsigned seed = 1; seed <= 100; ++seed) {
+    std::mt19937 generator(seed);
+    const auto draw = [&](double low, double high) {
+      return std::uniform_real_distribution<double>(low, high)(generator);
+    };
+    const int n = 1 + static_cast<int>(seed % 25);
+    // response = G·G' + a little, units far apart
+    std::vector<std::vector<double>> g(static_cast<std::size_t>(n), std::vector<double>(static_cast<std::size_t>(n)));
+    for (auto& line : g) {
+      const double unit = std::pow(10, draw(-1, 1));
+      for (double& x : line) x = unit * draw(-1, 1);
+    }
+    BoxSolver box;
+    box.start(n);
+    std::vector<double> left;
+    std::vector<double> begun;
+    for (int i = 0; i < n; ++i) {
+      for (int k = 0; k < n; ++k) {
+        double sum = i == k ? 0.01 : 0;
+        for (int m = 0; m < n; ++m) {
+          sum += g[static_cast<std::size_t>(i)][static_cast<std::size_t>(m)] *
+                 g[static_cast<std::size_t>(k)][static_cast<std::size_t>(m)];
+        }
+        box.response(i, k) = sum;
+      }
+      BoxSolver::Row& r = box.row(i);
+      r.left = draw(-2, 2);
+      const int kind = i % 4;
+      r.lower = kind == 0 ? 0 : (kind == 1 ? -1e18 : draw(-1, 0));
+      r.upper = kind <= 1 ? 1e18 : draw(0, 1);
+      r.impulse = kind <= 1 ? 0 : draw(r.lower, r.upper);
+      left.push_back(r.left);
+      begun.push_back(r.impulse);
+    }
+    EXPECT_LE(box.solve(1e-7), 1e-5) << seed;
+    EXPECT_LT(missed(box, left, begun), 1e-5) << seed;
+  }
+}
+
+// A block of mass 2 kg that would sink at 1 m/s and slides at 3 m/s; its contact holds with 2 N·s and brakes with
+// friction's part of it: 3 m/s - 0.5·2/2 m/s are left, or nothing where friction can do more.
+TEST(BoxSolver, FrictionFollowsItsNormal) {
+  for (const double friction : {0.5, 2.0}) {
+    BoxSolver box;
+    box.start(2);
+    box.response(0, 0) = box.response(1, 1) = 0.5;
+    box.row(0) = {1, 0, 0, 1e18, -1, 0, 0};
+    box.row(1) = {-3, 0, 0, 0, 0, friction, 0};
+    EXPECT_LE(box.solve(1e-9), 1e-9);
+    EXPECT_NEAR(box.row(0).impulse, 2, 1e-6);
+    EXPECT_NEAR(box.row(1).impulse, -std::min(2 * friction, 6.0), 1e-6);
+  }
+  BoxSolver box;
+  box.start(2);
+  box.response(0, 0) = box.response(1, 1) = 0.5;
+  box.row(0) = {1, 0, 0, 1e18, -1, 0, 0};
+  box.row(1) = {-3, 0, 0, 0, 0, 0.5, 0.3};
+  box.solve(1e-9);
+  EXPECT_NEAR(box.row(1).impulse, -0.3, 1e-6);  // its own bound is less
+}
+
+// Four points that bear one load: any share will do, the sum is the load's.
+TEST(BoxSolver, RowsThatDependOnEachOtherShare) {
+  BoxSolver box;
+  box.start(4);
+  for (int i = 0; i < 4; ++i) {
+    for (int k = 0; k < 4; ++k) box.response(i, k) = 0.25;
+    box.row(i) = {1, 0, 0, 1e18, -1, 0, 0};
+  }
+  EXPECT_LE(box.solve(1e-9), 1e-9);
+  double sum = 0;
+  for (int i = 0; i < 4; ++i) sum += box.row(i).impulse;
+  EXPECT_NEAR(sum, 4, 1e-6);
+}
+
+}  // namespace
+}  // namespace limber

@@ -1,0 +1,200 @@
+// The direct solver against physics: what servos hold, stall at and reach, what joints keep together, what stands.
+#include "sim/island_direct.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "joint_rig.h"
+#include "sim/raw_machines.h"
+
+namespace limber {
+namespace {
+
+// An arm of boxes, x and y in turn, standing on a base at the floor's height, without a floor.
+RawScene arm(int parts, double ratio = 1) {
+  RawScene s = raw_arm(parts, ratio, 10000, 0, false);
+  s.floor = false;
+  s.measure = true;
+  return s;
+}
+
+RawFigures play(RawPlayer& player, int steps) {
+  RawFigures all;
+  for (int i = 0; i < steps; ++i) {
+    player.step();
+    all.take(player.figures());
+  }
+  return all;
+}
+
+TEST(IslandDirect, AnArmOfSeventeenPartsFollowsItsServosWhateverItsMasses) {
+  for (const double ratio : {1.0, 13.0, 129.0}) {
+    RawScene s = arm(17, ratio);
+    for (RawJoint& j : s.joints) j.amplitude = 0.3;
+    const auto player = RawPlayer::make(s, RawSolver::direct);
+    const RawFigures f = play(*player, 360);
+    EXPECT_LT(f.gap, 1.4e-3) << ratio;
+    EXPECT_LT(f.servo_error, 0.07) << ratio;
+    EXPECT_LT(player->direct().locked, 1e-6) << ratio;
+    EXPECT_EQ(player->direct().direct, 360);
+    EXPECT_EQ(player->direct().fallbacks, 0);
+  }
+}
+
+// 35 kg; links and parts of 13:1 in turn, the last part on a tip plate of 129:1.
+TEST(IslandDirect, ThePredecessorsRobotKeepsTogetherAndFollowsItsServos) {
+  RawScene s = raw_robot(10000, 0.3);
+  s.measure = true;
+  double mass = 0;
+  for (const RawPart& p : s.parts) mass += p.mass;
+  EXPECT_NEAR(mass, 34.882, 1e-3);
+  const auto player = RawPlayer::make(s, RawSolver::direct);
+  const RawFigures f = play(*player, 120);
+  EXPECT_LT(f.gap, 1.5e-3);
+  EXPECT_LT(f.servo_error, 0.07);
+  EXPECT_LT(player->direct().locked, 1e-6);
+  EXPECT_EQ(player->direct().direct, 120);
+  EXPECT_EQ(player->direct().fallbacks, 0);
+}
+
+TEST(IslandDirect, AnUprightArmStandsForAMinute) {
+  const auto player = RawPlayer::make(arm(17), RawSolver::direct);
+  const RawFigures f = play(*player, 3600);
+  EXPECT_LT(f.servo_error, 0.005);
+  EXPECT_LT(f.gap, 1e-4);
+}
+
+TEST(IslandDirect, ATreeOnAFloatingHubHoldsTogether) {
+  RawScene s = raw_tree(true);
+  s.measure = true;
+  const auto player = RawPlayer::make(s, RawSolver::direct);
+  const RawFigures f = play(*player, 360);
+  EXPECT_LT(f.gap, 0.9e-3);
+  EXPECT_LT(f.servo_error, 0.07);
+  EXPECT_EQ(player->direct().fallbacks, 0);
+}
+
+// A beam of mass m on a hinge that is too weak to hold it: falling through the horizontal, the servo gives all it has.
+TEST(IslandDirect, AServoStallsAtItsTorqueAndOneThatHoldsGivesTheLoads) {
+  constexpr double kLoad = 2 * 9.81 * 0.5;  // m·g·l
+  for (const double force : {100.0, 0.5 * kLoad}) {
+    Rig rig;
+    rig.world.set_direct(true);
+    rig.world.setGravity(btVector3(0, 0, btScalar(-9.81)));
+    btRigidBody& base = rig.ground();
+    btRigidBody& beam = rig.part(2, Vec3(0.1, 0.1, 0.1), {{0.5, 0, 0}, quat_identity()});
+    // the own axis, z of the frames, lies along the world's y
+    const Pose frame{{0, 0, 0}, quat_axis({1, 0, 0}, -kPi / 2)};
+    JointConstraint& hinge = rig.joint(base, beam, frame, {{-0.5, 0, 0}, frame.rotation});
+    hinge.set_axis(5, servo_axis(free_axis(), 0, 1, force));
+    rig.steps(force > kLoad ? 240 : 4);
+    EXPECT_NEAR(std::fabs(hinge.applied_torque().z), std::min(force, kLoad), 0.01 * kLoad) << force;
+  }
+}
+
+TEST(IslandDirect, ALimitStopsAndAServoDrivenPastItStaysThere) {
+  RawScene s = arm(8);
+  for (RawJoint& j : s.joints) {
+    j.lower = -0.2;
+    j.upper = 0.2;
+    j.amplitude = 0.6;
+    j.square = true;
+  }
+  const auto player = RawPlayer::make(s, RawSolver::direct);
+  EXPECT_LT(play(*player, 240).limit_passed, 0.01);
+}
+
+// Without drives, friction or damping nothing gives a chain energy.
+TEST(IslandDirect, APassiveChainDoesNotGainEnergy) {
+  RawScene s = arm(8);
+  s.step = 1.0 / 240;
+  s.gravity = {9.81, 0, 0};
+  for (RawJoint& j : s.joints) j.force = 0;
+  const auto player = RawPlayer::make(s, RawSolver::direct);
+  const double begun = player->energy();
+  double highest = begun;
+  RawFigures f;
+  for (int i = 0; i < 2400; ++i) {
+    player->step();
+    f.take(player->figures());
+    highest = std::max(highest, player->energy());
+  }
+  EXPECT_LT(f.gap, 4e-3);
+  const double swing = 9.81 * 8 * 0.8;  // the chain's fall from lying to hanging
+  EXPECT_LT(highest - begun, 0.005 * swing);
+}
+
+// Four legs of three joints each: they stand, every contact obeys its law.
+TEST(IslandDirect, AHeavyTrunkStandsOnLightFeet) {
+  const double masses[][2] = {{10, 0.5}, {50, 1}, {50, 0.1}};
+  for (const auto& [trunk, leg] : masses) {
+    RawScene s = raw_legs(trunk, leg, false);
+    s.measure = true;
+    const auto player = RawPlayer::make(s, RawSolver::direct);
+    const RawFigures f = play(*player, 240);
+    EXPECT_LT(f.gap, 2e-4) << trunk;
+    EXPECT_LT(f.servo_error, 0.005) << trunk;
+    EXPECT_LT(player->direct().contact, 1e-3) << trunk;
+    EXPECT_NEAR(player->pose(0).position.z, 0.42, 2e-3) << trunk;
+    EXPECT_EQ(player->direct().fallbacks + player->direct().plain, 0);
+  }
+}
+
+// Eight links closed to a ring: one joint of it is held around the tree that the others make.
+TEST(IslandDirect, ARingStaysClosed) {
+  RawScene s;
+  s.measure = true;
+  s.parts.push_back({{0.1, 0.1, 0.1}, 0, {{0, 0, 0.5}, quat_identity()}});
+  const double radius = 0.2 / (2 * std::sin(kPi / 8));
+  const auto corner = [&](int i) { return radius * Vec3(0, std::sin(kPi / 4 * i), std::cos(kPi / 4 * i)); };
+  for (int i = 0; i < 8; ++i) {
+    s.parts.push_back(
+        {{0.1, 0.2, 0.05}, 1, {0.5 * (corner(i) + corner(i + 1)), quat_axis({1, 0, 0}, -kPi / 4 * (i + 0.5))}});
+    RawJoint j;
+    j.axis = {1, 0, 0};
+    j.parent = i;
+    j.child = i + 1;
+    j.place = corner(i);
+    s.joints.push_back(j);
+  }
+  RawJoint last = s.joints.back();
+  last.parent = 8;
+  last.child = 1;
+  last.place = corner(8);
+  s.joints.push_back(last);
+  const auto player = RawPlayer::make(s, RawSolver::direct);
+  const RawFigures f = play(*player, 240);
+  EXPECT_LT(f.gap, 0.02);
+  EXPECT_GT(f.speed, 0.5);  // it does move
+  EXPECT_LT(player->direct().contact, 1e-3);
+  EXPECT_EQ(player->direct().fallbacks, 0);
+}
+
+TEST(IslandDirect, RepeatsBitForBit) {
+  std::vector<Vec3> first;
+  for (int run = 0; run < 2; ++run) {
+    RawScene s = arm(9);
+    s.floor = true;
+    for (RawJoint& j : s.joints) {
+      j.force = 30;
+      j.amplitude = 0.9;
+      j.square = true;
+    }
+    const auto player = RawPlayer::make(s, RawSolver::direct);
+    play(*player, 180);
+    for (int i = 0; i <= 9; ++i) {
+      const Vec3 place = player->pose(i).position;
+      if (run == 0) {
+        first.push_back(place);
+      } else {
+        EXPECT_EQ(place, first[static_cast<std::size_t>(i)]) << i;
+      }
+    }
+  }
+}
+
+}  // namespace
+}  // namespace limber
