@@ -78,6 +78,23 @@ CLI::Validator whole_number() {
       "", "count");
 }
 
+// who plays it and listens to it
+void add_network(CLI::App& play, PlayOptions& o) {
+  play.add_option("--osc-in", o.osc_in, "where OSC comes in; default 127.0.0.1:9003")->type_name("[ADDR:]PORT|off");
+  play.add_option("--osc-allow", o.osc_allow, "only these senders, such as 192.168.1.0/24")->type_name("CIDR,...");
+  play.add_option("--osc-out", o.osc_out,
+                  "where joint poses stream to; default 127.0.0.1:9005. Options behind it: rate=60, "
+                  "bundle=off|1472|8192|65504, "
+                  "streams=pos+rot+relrot+relpos, bodies=arm*, errors=on")
+      ->type_name("HOST:PORT[,...]|off")
+      ->allow_extra_args(false);
+  play.add_option("--query", o.query,
+                  "where OSCQuery and the remote panel (for a browser) are; default 127.0.0.1 and the number of "
+                  "--osc-in; 0.0.0.0:9003 opens it to phones and tablets")
+      ->type_name("[ADDR:]PORT|off");
+  play.add_flag("--osc-optional", o.osc_optional, "play on when a port can't be had");
+}
+
 CLI::App* add_play(CLI::App& app, PlayOptions& o) {
   CLI::App* play = app.add_subcommand("play", "play a scene (the default command)");
   CLI::Option* scene =
@@ -102,19 +119,7 @@ CLI::App* add_play(CLI::App& app, PlayOptions& o) {
   CLI::Option* preset =
       play->add_option("--preset", o.preset, "begin with this preset of the scene's, before what --set says")
           ->type_name("NAME");
-  play->add_option("--osc-in", o.osc_in, "where OSC comes in; default 127.0.0.1:9003")->type_name("[ADDR:]PORT|off");
-  play->add_option("--osc-allow", o.osc_allow, "only these senders, such as 192.168.1.0/24")->type_name("CIDR,...");
-  play->add_option("--osc-out", o.osc_out,
-                   "where joint poses stream to; default 127.0.0.1:9005. Options behind it: rate=60, "
-                   "bundle=off|1472|8192|65504, "
-                   "streams=pos+rot+relrot+relpos, bodies=arm*, errors=on")
-      ->type_name("HOST:PORT[,...]|off")
-      ->allow_extra_args(false);
-  play->add_option("--query", o.query,
-                   "where OSCQuery and the remote panel (for a browser) are; default 127.0.0.1 and the number of "
-                   "--osc-in; 0.0.0.0:9003 opens it to phones and tablets")
-      ->type_name("[ADDR:]PORT|off");
-  play->add_flag("--osc-optional", o.osc_optional, "play on when a port can't be had");
+  add_network(*play, o);
   play->add_option("--package-path", o.package_paths, "a folder for package:// in URDF files")
       ->type_name("DIR")
       ->allow_extra_args(false);
