@@ -241,6 +241,13 @@ changed_files() {
   { git diff --name-only --diff-filter=d "$base"; git ls-files -o --exclude-standard; } | grep -E '^(src|tests)/.*\.cpp$' | sort -u
 }
 
+# files, a line each -> some files of one folder in a line; built-in behaviours have names in common, as in a unity build
+lint_groups() {
+  awk '{ folder = $0; sub("/[^/]*$", "", folder)
+         if (folder != last || count == 6 || folder == "src/behaviors") { if (NR > 1) print ""; count = 0 }
+         printf "%s%s", (count++ ? " " : ""), $0; last = folder } END { print "" }'
+}
+
 step_style() {
   local log=build/check/format.log files
   git rev-parse --git-dir >/dev/null 2>&1 || { say "no git checkout: format and lint left out"; return; }
@@ -250,8 +257,7 @@ step_style() {
   case ${LIMBER_TIDY:-changed} in all) files=$(cpp_files | grep '\.cpp$') ;; off) files= ;; *) files=$(changed_files) ;; esac
   [ -n "$files" ] || return
   log=build/check/tidy.log
-  # our own flags, so that no build has to come first
-  if xargs -P "$(jobs)" -n 1 .ci/tidy >"$log" 2>&1 <<<"$files"; then
+  if lint_groups <<<"$files" | xargs -P "$(jobs)" -L 1 .ci/tidy >"$log" 2>&1; then
     pass
     say "clang-tidy: $(wc -l <<<"$files") files clean"
   else

@@ -55,6 +55,47 @@ const char* get_clipboard(void* options) {
   return pasted.c_str();
 }
 
+// what the desk does by itself
+void act_on_show(HotkeyAction action, Desk& desk) {
+  switch (action) {
+    case HotkeyAction::play_pause:
+      if (desk.now != nullptr) desk.send(desk.now->paused ? "/transport/play" : "/transport/pause");
+      break;
+    case HotkeyAction::step:
+      desk.step_time(1);
+      break;
+    case HotkeyAction::step_back:
+      desk.step_time(-1);
+      break;
+    case HotkeyAction::rewind:
+      desk.rewind(kRewindSeconds);
+      break;
+    case HotkeyAction::record:
+      desk.record();
+      break;
+    case HotkeyAction::play_take:
+      desk.play_take();
+      break;
+    case HotkeyAction::panic:
+      desk.panic();
+      break;
+    case HotkeyAction::reset:
+      desk.send("/transport/reset");
+      break;
+    case HotkeyAction::undo:
+      desk.undo();
+      break;
+    case HotkeyAction::redo:
+      desk.redo();
+      break;
+    case HotkeyAction::overlay:
+      desk.toggle_overlay();
+      break;
+    default:
+      break;
+  }
+}
+
 }  // namespace
 
 Gui::Gui(EngineLink& link, GuiOptions options)
@@ -173,30 +214,6 @@ void Gui::act(HotkeyAction action, const KeyPress& press) {
   };
   const auto digit = static_cast<std::size_t>(press.key) - static_cast<std::size_t>(GuiKey::digit_1) + 1;
   switch (action) {
-    case HotkeyAction::play_pause:
-      if (desk_.now != nullptr) desk_.send(desk_.now->paused ? "/transport/play" : "/transport/pause");
-      break;
-    case HotkeyAction::step:
-      desk_.step_time(1);
-      break;
-    case HotkeyAction::step_back:
-      desk_.step_time(-1);
-      break;
-    case HotkeyAction::rewind:
-      desk_.rewind(kRewindSeconds);
-      break;
-    case HotkeyAction::record:
-      desk_.record();
-      break;
-    case HotkeyAction::play_take:
-      desk_.play_take();
-      break;
-    case HotkeyAction::panic:
-      desk_.panic();
-      break;
-    case HotkeyAction::reset:
-      desk_.send("/transport/reset");
-      break;
     case HotkeyAction::hide:
       settings.hidden = !settings.hidden;
       break;
@@ -205,12 +222,6 @@ void Gui::act(HotkeyAction action, const KeyPress& press) {
       break;
     case HotkeyAction::search:
       desk_.focus_search = true;
-      break;
-    case HotkeyAction::undo:
-      desk_.undo();
-      break;
-    case HotkeyAction::redo:
-      desk_.redo();
       break;
     case HotkeyAction::larger:
       text_size(1);
@@ -228,9 +239,6 @@ void Gui::act(HotkeyAction action, const KeyPress& press) {
       desk_.go_to_view(digit);
       actions_.push_back(action);  // what is followed is followed no more
       break;
-    case HotkeyAction::overlay:
-      desk_.toggle_overlay();
-      break;
     case HotkeyAction::earlier:
     case HotkeyAction::later:
       desk_.move_behavior = action == HotkeyAction::earlier ? -1 : 1;
@@ -239,6 +247,9 @@ void Gui::act(HotkeyAction action, const KeyPress& press) {
     case HotkeyAction::full_screen:
     case HotkeyAction::home_view:
       actions_.push_back(action);
+      break;
+    default:
+      act_on_show(action, desk_);
       break;
   }
 }

@@ -52,6 +52,17 @@ void arrow_back(const Pen& pen) {
   pen.triangle(pen.at(-0.95F, -0.62F), pen.at(-0.3F, -0.5F), pen.at(-0.85F, 0.06F));
 }
 
+void magnifier(const Pen& pen) {
+  pen.list.AddCircle(pen.at(-0.18F, -0.18F), pen.half * 0.55F, pen.color, 16, pen.width() * 0.8F);
+  pen.line(pen.at(0.25F, 0.25F), pen.at(0.8F, 0.8F));
+}
+
+void warning_sign(const Pen& pen) {
+  pen.list.AddTriangle(pen.at(0, -0.85F), pen.at(0.95F, 0.75F), pen.at(-0.95F, 0.75F), pen.color, pen.width() * 0.7F);
+  pen.line(pen.at(0, -0.3F), pen.at(0, 0.25F));
+  pen.list.AddCircleFilled(pen.at(0, 0.5F), pen.half * 0.12F, pen.color, 8);
+}
+
 }  // namespace
 
 void draw_icon(Icon icon, float x, float y, float half, std::uint32_t color) {
@@ -94,13 +105,10 @@ void draw_icon(Icon icon, float x, float y, float half, std::uint32_t color) {
       arrow_back(pen);
       break;
     case Icon::search:
-      pen.list.AddCircle(pen.at(-0.18F, -0.18F), half * 0.55F, color, 16, pen.width() * 0.8F);
-      pen.line(pen.at(0.25F, 0.25F), pen.at(0.8F, 0.8F));
+      magnifier(pen);
       break;
     case Icon::warning:
-      pen.list.AddTriangle(pen.at(0, -0.85F), pen.at(0.95F, 0.75F), pen.at(-0.95F, 0.75F), color, pen.width() * 0.7F);
-      pen.line(pen.at(0, -0.3F), pen.at(0, 0.25F));
-      pen.list.AddCircleFilled(pen.at(0, 0.5F), half * 0.12F, color, 8);
+      warning_sign(pen);
       break;
     case Icon::close:
       pen.line(pen.at(-0.6F, -0.6F), pen.at(0.6F, 0.6F));

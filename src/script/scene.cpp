@@ -34,7 +34,7 @@ Result<void> Scene::run(const std::string& file, const RunInputs* beside) {
     vm_->begin_beside(beside->state);
   }
   c.answer.top_level = 1;
-  const Result<void> ran = vm_->run(*text, c.files.shown(file), fault_);
+  Result<void> ran = vm_->run(*text, c.files.shown(file), fault_);
   c.generator();  // the seed as the top level leaves it
   c.answer.top_level = 0;
   c.beside = nullptr;

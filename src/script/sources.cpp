@@ -120,6 +120,7 @@ std::vector<SourceFile> Sources::files() const {
   for (const auto& [path, text] : texts_) all.try_emplace(path, 0);
   for (const std::string& path : passed_) all.try_emplace(path, 0);
   std::vector<SourceFile> files;
+  files.reserve(all.size());
   for (const auto& [path, content] : all) {
     files.push_back({path, content == 0 ? std::nullopt : std::optional(content)});
   }

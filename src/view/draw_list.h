@@ -32,6 +32,7 @@ struct Instance {
 struct MeshKey {
   ShapeKind kind = ShapeKind::box;
   const MeshModel* model = nullptr;
+  // NOLINTNEXTLINE(modernize-use-nullptr): seen in the comparison that the compiler writes
   auto operator<=>(const MeshKey&) const = default;
 };
 

@@ -29,6 +29,7 @@ namespace {
 
 constexpr float kLying = 0.9999F;  // of a normal upwards: planes this near to lying are floors
 
+// OpenGL takes places in a buffer as pointers: NOLINTNEXTLINE(performance-no-int-to-ptr)
 const void* offset(std::size_t bytes) { return reinterpret_cast<const void*>(bytes); }
 
 void describe_instance(std::size_t first) {
@@ -287,6 +288,25 @@ void Renderer::draw_overlay(const Snapshot& before, const Snapshot& now, double 
   glEnable(GL_CULL_FACE);
 }
 
+// brings the instances over; then what the lamp and the ground see of them
+void Renderer::draw_shadows(const Lighting& lighting) {
+  const std::vector<Instance>& instances = list_.instances();
+  glBindBuffer(GL_ARRAY_BUFFER, *instances_);
+  glBufferData(GL_ARRAY_BUFFER, static_cast<GLsizeiptr>(instances.size() * sizeof(Instance)), instances.data(),
+               GL_STREAM_DRAW);
+  glBlendFunc(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA);
+  glEnable(GL_DEPTH_TEST);
+  glDepthFunc(GL_LEQUAL);
+  glEnable(GL_CULL_FACE);
+  glEnable(GL_FRAMEBUFFER_SRGB);
+  draw_depth(lamp_, grade_.lamp_map, lighting.lamp_clip, false);
+  if (grade_.contact_taps > 0) draw_depth(ground_, grade_.ground_map, lighting.ground_clip, true);
+  glActiveTexture(GL_TEXTURE1);
+  glBindTexture(GL_TEXTURE_2D, *ground_.texture);
+  glActiveTexture(GL_TEXTURE0);
+  glBindTexture(GL_TEXTURE_2D, *lamp_.texture);
+}
+
 Result<void> Renderer::draw(const Snapshot& before, const Snapshot& now, double mix, int width, int height,
                             const FreePart& free) {
   return draw_into(canvas_, before, now, mix, width, height, free);
@@ -318,22 +338,7 @@ Result<void> Renderer::draw_into(Canvas& canvas, const Snapshot& before, const S
     lighting.frame.floor_color.w = 0;
   }
 
-  const std::vector<Instance>& instances = list_.instances();
-  glBindBuffer(GL_ARRAY_BUFFER, *instances_);
-  glBufferData(GL_ARRAY_BUFFER, static_cast<GLsizeiptr>(instances.size() * sizeof(Instance)), instances.data(),
-               GL_STREAM_DRAW);
-  glBlendFunc(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA);
-  glEnable(GL_DEPTH_TEST);
-  glDepthFunc(GL_LEQUAL);
-  glEnable(GL_CULL_FACE);
-  glEnable(GL_FRAMEBUFFER_SRGB);
-  draw_depth(lamp_, grade_.lamp_map, lighting.lamp_clip, false);
-  if (grade_.contact_taps > 0) draw_depth(ground_, grade_.ground_map, lighting.ground_clip, true);
-
-  glActiveTexture(GL_TEXTURE1);
-  glBindTexture(GL_TEXTURE_2D, *ground_.texture);
-  glActiveTexture(GL_TEXTURE0);
-  glBindTexture(GL_TEXTURE_2D, *lamp_.texture);
+  draw_shadows(lighting);
   glBindFramebuffer(GL_FRAMEBUFFER, *canvas.samples);
   glViewport(0, 0, width, height);
   glClearColor(0, 0, 0, 1);

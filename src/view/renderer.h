@@ -86,6 +86,7 @@ class Renderer {
   void draw_batches(const std::vector<Batch>& batches, int coarser, bool casting);
   void draw_mirrored(const Lighting& lighting);
   void draw_floors(const Lighting& lighting, const LookView& look);
+  void draw_shadows(const Lighting& lighting);
   void draw_floor(const PlaneView& plane, const Lighting& lighting, bool stage);
   void draw_sky();
 
