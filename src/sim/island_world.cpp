@@ -3,8 +3,6 @@
 
 #include <algorithm>
 
-#include <BulletCollision/BroadphaseCollision/btDbvtBroadphase.h>
-
 namespace limber {
 namespace {
 
@@ -35,37 +33,24 @@ void leave_gyroscopic_torque_to_us(btRigidBody& body) {
                                     BT_ENABLE_GYROSCOPIC_FORCE_IMPLICIT_BODY));
 }
 
-// Bullet's, but for the groups of set_apart
+// Bullet's, but that a pair which was made may collide
 class Dispatcher : public btCollisionDispatcher {
  public:
   BT_DECLARE_ALIGNED_ALLOCATOR();
   using btCollisionDispatcher::btCollisionDispatcher;
-  bool needsCollision(const btCollisionObject* a, const btCollisionObject* b) override {
-    if (a->getUserIndex2() >= 0 && a->getUserIndex2() == b->getUserIndex2()) return false;
-    return btCollisionDispatcher::needsCollision(a, b);
-  }
-};
-
-// Bullet's, in Bullet's memory
-class Broadphase : public btDbvtBroadphase {
- public:
-  BT_DECLARE_ALIGNED_ALLOCATOR();
+  bool needsCollision(const btCollisionObject*, const btCollisionObject*) override { return true; }
 };
 
 }  // namespace
 
 WorldParts::WorldParts(const WorldSetup& setup) : memory(BulletMemory::current()), team(setup.team) {
-  // shared by all worlds, and one may be made while another is stepped
-  if (gDbvtMargin != to_scalar(setup.broadphase_margin)) gDbvtMargin = to_scalar(setup.broadphase_margin);
   // Bullet's own pools of 4096 contact pairs take 4 MB, which each key state would look through; more pairs than a
   // pool holds cost no measurable time (arms-1000)
   btDefaultCollisionConstructionInfo pools;
   pools.m_defaultMaxPersistentManifoldPoolSize = pools.m_defaultMaxCollisionAlgorithmPoolSize = kPool;
   configuration = std::make_unique<btDefaultCollisionConfiguration>(pools);
   dispatcher = std::make_unique<Dispatcher>(configuration.get());
-  broadphase = std::make_unique<Broadphase>();
-  // every pair is looked at in every step, so that a pair's life does not depend on how many others there are
-  broadphase->m_cupdates = 100;
+  broadphase = std::make_unique<Broadphase>(setup.broadphase_margin);
   const BulletMemory::Scope heap(nullptr);
   for (int i = 0; i < (setup.team ? setup.team->members() : 1); ++i) {
     solvers.push_back(std::make_unique<IslandSolver>());
@@ -81,6 +66,7 @@ IslandWorld::IslandWorld(const WorldSetup& setup)
   info.m_splitImpulse = 1;
   info.m_splitImpulsePenetrationThreshold = 0;
   info.m_minimumSolverBatchSize = kBatch;
+  getDispatchInfo().m_useContinuous = false;
 }
 
 IslandWorld::~IslandWorld() = default;
@@ -103,12 +89,7 @@ void IslandWorld::step(double h, int substeps) {
 void IslandWorld::addConstraint(btTypedConstraint* constraint, bool disable_collisions) {
   const BulletMemory::Scope scope(memory);
   btDiscreteDynamicsWorld::addConstraint(constraint, disable_collisions);
-  btBroadphaseProxy* a = constraint->getRigidBodyA().getBroadphaseHandle();
-  btBroadphaseProxy* b = constraint->getRigidBodyB().getBroadphaseHandle();
-  if (!disable_collisions || !a || !b) return;
-  // contacts that the two have already would be solved for ever
-  btOverlappingPairCache* pairs = getPairCache();
-  if (btBroadphasePair* pair = pairs->findPair(a, b)) pairs->cleanOverlappingPair(*pair, getDispatcher());
+  if (disable_collisions) look_anew(*constraint);
 }
 
 void IslandWorld::addRigidBody(btRigidBody* body) {
@@ -125,10 +106,9 @@ void IslandWorld::addRigidBody(btRigidBody* body, int group, int mask) {
 
 void IslandWorld::set_apart(btCollisionObject& object, int group) {
   if (object.getUserIndex2() == group) return;
+  const BulletMemory::Scope scope(memory);
   object.setUserIndex2(group);
-  // contacts that are there already would be solved for ever
-  btBroadphaseProxy* proxy = object.getBroadphaseHandle();
-  if (proxy != nullptr) getPairCache()->cleanProxyFromPairs(proxy, getDispatcher());
+  if (object.getBroadphaseHandle() != nullptr) broadphase->look_anew(object.getBroadphaseHandle());
 }
 
 void IslandWorld::removeConstraint(btTypedConstraint* constraint) {
@@ -137,9 +117,43 @@ void IslandWorld::removeConstraint(btTypedConstraint* constraint) {
   if (index == count) return;
   for (int i = index; i + 1 < count; ++i) m_constraints[i] = m_constraints[i + 1];
   m_constraints.pop_back();
+  const BulletMemory::Scope scope(memory);
   constraint->getRigidBodyA().removeConstraintRef(constraint);
   constraint->getRigidBodyB().removeConstraintRef(constraint);
+  look_anew(*constraint);
 }
+
+// whether its parts may collide has changed
+void IslandWorld::look_anew(btTypedConstraint& joint) {
+  for (btRigidBody* body : {&joint.getRigidBodyA(), &joint.getRigidBodyB()}) {
+    if (body->getBroadphaseHandle() != nullptr) broadphase->look_anew(body->getBroadphaseHandle());
+  }
+}
+
+void IslandWorld::predictUnconstraintMotion(btScalar h) {
+  for (int i = 0; i < m_nonStaticRigidBodies.size(); ++i) {
+    btRigidBody& body = *m_nonStaticRigidBodies[i];
+    if (body.getLinearDamping() != 0 || body.getAngularDamping() != 0) body.applyDamping(h);
+  }
+}
+
+void IslandWorld::createPredictiveContacts(btScalar) {}  // no continuous collision
+
+void IslandWorld::updateAabbs() {
+  for (int i = 0; i < m_collisionObjects.size(); ++i) updateSingleAabb(m_collisionObjects[i]);
+}
+
+void IslandWorld::integrateTransforms(btScalar h) {
+  btTransform moved;
+  for (int i = 0; i < m_nonStaticRigidBodies.size(); ++i) {
+    btRigidBody& body = *m_nonStaticRigidBodies[i];
+    if (!body.isActive() || body.isStaticOrKinematicObject()) continue;
+    body.predictIntegratedTransform(h, moved);
+    body.proceedToTransform(moved);
+  }
+}
+
+void IslandWorld::updateActivationState(btScalar) {}  // none sleeps
 
 void IslandWorld::solveConstraints(btContactSolverInfo& info) {
   sort_bodies();

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "base/team.h"
+#include "sim/broadphase.h"
 #include "sim/bullet.h"
 #include "sim/bullet_memory.h"
 #include "sim/island_direct.h"
@@ -16,7 +17,7 @@ namespace limber {
 
 /// How a world is made; see performance notes of each for what it buys.
 struct WorldSetup {
-  double broadphase_margin = 0.01;  ///< Metres that bounding boxes are fattened by; shared by all worlds.
+  double broadphase_margin = 0.01;  ///< Metres that bounding boxes are fattened by.
   int solver_iterations = 50;
   std::shared_ptr<Team> team{};  ///< Solves islands side by side, with the same result; null: this thread alone.
 };
@@ -72,7 +73,7 @@ struct WorldParts {
   BulletMemory* memory;  ///< Of the scope that it was made in, or null.
   std::unique_ptr<btDefaultCollisionConfiguration> configuration;
   std::unique_ptr<btCollisionDispatcher> dispatcher;
-  std::unique_ptr<btDbvtBroadphase> broadphase;
+  std::unique_ptr<Broadphase> broadphase;
   /// One for each of the team's members; on the heap: nothing of them outlives a step.
   std::vector<std::unique_ptr<IslandSolver>> solvers;
   std::shared_ptr<Team> team;
@@ -80,8 +81,8 @@ struct WorldParts {
 
 /// Joints and contacts of an island are solved in an order that depends on that island alone (joints as added,
 /// contacts by the parts' age), so an island moves the same, bit for bit, alone or among others. Bodies are the
-/// caller's, without motion states, and never sleep. What it keeps from step to step lies in the memory of the
-/// BulletMemory::Scope that it was made in. [sim]
+/// caller's, without motion states, never sleep, and have no continuous collision. What it keeps from step to step lies
+/// in the memory of the BulletMemory::Scope that it was made in. [sim]
 class IslandWorld : private WorldParts, public btDiscreteDynamicsWorld {
  public:
   BT_DECLARE_ALIGNED_ALLOCATOR();
@@ -111,7 +112,12 @@ class IslandWorld : private WorldParts, public btDiscreteDynamicsWorld {
   IslandDirect& direct() { return solvers.front()->direct(); }
 
  protected:
+  void predictUnconstraintMotion(btScalar h) override;
+  void createPredictiveContacts(btScalar h) override;
+  void updateAabbs() override;
   void solveConstraints(btContactSolverInfo& info) override;
+  void integrateTransforms(btScalar h) override;
+  void updateActivationState(btScalar h) override;
 
  private:
   struct Touch {  // a contact manifold and its place in the order
@@ -121,6 +127,7 @@ class IslandWorld : private WorldParts, public btDiscreteDynamicsWorld {
     btPersistentManifold* manifold;
   };
 
+  void look_anew(btTypedConstraint& joint);
   void sort_bodies();
   void sort_joints();
   void sort_contacts();

@@ -7,10 +7,6 @@
 
 namespace limber {
 
-namespace {
-constexpr btScalar kStockMargin = btScalar(0.05);  // Bullet's own; the variable behind it is shared by all worlds
-}
-
 Vec3 ArmScene::center(int arm, int part) const {
   const int side = static_cast<int>(std::ceil(std::sqrt(arms)));
   const double along = size.z * (part + 1.5);
@@ -28,10 +24,8 @@ RawLoop::RawLoop(const ArmScene& scene) : scene_(scene), box_(to_bt(scene.size *
   world_.getSolverInfo().m_solverMode = SOLVER_USE_WARMSTARTING | SOLVER_SIMD | SOLVER_USE_2_FRICTION_DIRECTIONS;
   world_.getSolverInfo().m_splitImpulse = 1;
   world_.getSolverInfo().m_splitImpulsePenetrationThreshold = 0;
-  const btScalar margin = std::exchange(gDbvtMargin, kStockMargin);
   add_floor();
   for (int arm = 0; arm < scene.arms; arm++) add_arm(arm);
-  gDbvtMargin = margin;
 }
 
 RawLoop::~RawLoop() {
@@ -87,9 +81,7 @@ void RawLoop::drive(double time) {
 }
 
 void RawLoop::tick() {
-  const btScalar margin = std::exchange(gDbvtMargin, kStockMargin);
   for (int i = 0; i < scene_.substeps; i++) world_.stepSimulation(to_scalar(scene_.step), 0);
-  gDbvtMargin = margin;
 }
 
 double RawLoop::joint_gap() const {

@@ -11,7 +11,6 @@
 namespace limber {
 namespace {
 
-constexpr btScalar kStockBoxMargin = btScalar(0.05);  // Bullet's own; the variable behind it is shared by all worlds
 constexpr int kGround = 1;
 constexpr int kPart = 2;
 
@@ -116,10 +115,8 @@ class StockPlayer : public Player<btDiscreteDynamicsWorld> {
   // null: Bullet's own choice of solver
   StockPlayer(const RawScene& raw, btConstraintSolver* solver)
       : Player(raw), world_(&dispatcher_, &broadphase_, solver != nullptr ? solver : &solver_, &configuration_) {
-    const btScalar margin = std::exchange(gDbvtMargin, kStockBoxMargin);
     build(world_);
     for (const RawJoint& joint : scene.joints) add_joint(joint);
-    gDbvtMargin = margin;
   }
   ~StockPlayer() override {
     for (const auto& joint : joints_) world_.removeConstraint(joint.get());
@@ -127,14 +124,12 @@ class StockPlayer : public Player<btDiscreteDynamicsWorld> {
     if (floor) world_.removeRigidBody(floor.get());
   }
   void step() override {
-    const btScalar margin = std::exchange(gDbvtMargin, kStockBoxMargin);
     for (std::size_t i = 0; i < joints_.size(); ++i) {
       if (scene.joints[i].force > 0) joints_[i]->setServoTarget(3, to_scalar(-scene.joints[i].target(time)));
     }
     pull();
     world_.stepSimulation(to_scalar(scene.step), 0);
     time += scene.step;
-    gDbvtMargin = margin;
   }
   RawFigures figures() const override {
     RawFigures f;

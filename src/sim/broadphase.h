@@ -1,0 +1,68 @@
+// Broadphase: which objects come so near to each other that contacts are looked for.
+#pragma once
+
+#include "sim/bullet.h"
+
+#include <BulletCollision/BroadphaseCollision/btDbvt.h>
+#include <BulletCollision/BroadphaseCollision/btOverlappingPairCache.h>
+
+namespace limber {
+
+/// Bullet's trees of bounding boxes, one for what moves and one for what stands, and Bullet's table of pairs. Only
+/// pairs that may collide are in the table: neither objects of one group, nor those that a joint keeps from colliding.
+/// A plane is in no tree, since its box is everything: it meets what comes as near to it as a contact can begin. Pairs
+/// are found once a step, in calculateOverlappingPairs, around what left its box or was looked at anew. All that it
+/// remembers lies in the memory of the BulletMemory::Scope that it is used in. [sim]
+class Broadphase : public btBroadphaseInterface {
+ public:
+  BT_DECLARE_ALIGNED_ALLOCATOR();
+
+  /// Metres that the boxes of what moves are larger: so far it moves before its neighbours are looked for again.
+  explicit Broadphase(double margin) : margin_(to_scalar(margin)) {}
+  ~Broadphase() override;
+  Broadphase(const Broadphase&) = delete;
+  Broadphase& operator=(const Broadphase&) = delete;
+
+  /// Who may collide with this one has changed: from the next step on its pairs are those that may.
+  void look_anew(btBroadphaseProxy* proxy);
+
+  btBroadphaseProxy* createProxy(const btVector3& low, const btVector3& high, int shape, void* object, int group,
+                                 int mask, btDispatcher* dispatcher) override;
+  void destroyProxy(btBroadphaseProxy* proxy, btDispatcher* dispatcher) override;
+  void setAabb(btBroadphaseProxy* proxy, const btVector3& low, const btVector3& high,
+               btDispatcher* dispatcher) override;
+  void getAabb(btBroadphaseProxy* proxy, btVector3& low, btVector3& high) const override;
+  void calculateOverlappingPairs(btDispatcher* dispatcher) override;
+
+  btOverlappingPairCache* getOverlappingPairCache() override { return &pairs_; }
+  const btOverlappingPairCache* getOverlappingPairCache() const override { return &pairs_; }
+
+  /// All whose boxes meet the ray's own box, and all planes.
+  void rayTest(const btVector3& from, const btVector3& to, btBroadphaseRayCallback& callback, const btVector3& low,
+               const btVector3& high) override;
+  void aabbTest(const btVector3& low, const btVector3& high, btBroadphaseAabbCallback& callback) override;
+  /// Around everything but planes.
+  void getBroadphaseAabb(btVector3& low, btVector3& high) const override;
+  void printStats() override {}
+
+ private:
+  struct Proxy;
+
+  template <class Found>
+  void meet(const btDbvt& tree, const btDbvtVolume& box, Found&& found);
+  void mark(Proxy& proxy);
+  void find_pairs_of(Proxy& proxy);
+  void add_pair(Proxy& a, Proxy& b);
+  void forget_parted(btDispatcher* dispatcher);
+
+  btScalar margin_;
+  btDbvt moving_;
+  btDbvt standing_;
+  btAlignedObjectArray<Proxy*> planes_;
+  btAlignedObjectArray<Proxy*> marked_;  // whose neighbours are to be looked for; null: gone since
+  btHashedOverlappingPairCache pairs_;
+  btAlignedObjectArray<const btDbvtNode*> stack_;
+  int last_id_ = 0;
+};
+
+}  // namespace limber

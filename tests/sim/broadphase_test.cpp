@@ -1,0 +1,210 @@
+// Broadphase: its pairs are those that looking at everything finds, whatever moves, comes, goes, joins and parts.
+#include "sim/broadphase.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <memory>
+#include <random>
+#include <set>
+#include <vector>
+
+#include "joint_rig.h"
+
+namespace limber {
+namespace {
+
+constexpr double kFat = 0.01;   // by which boxes are larger
+constexpr double kNear = 0.02;  // Bullet's contact threshold, by which it makes all boxes larger
+constexpr int kBodies = 60;
+constexpr int kRounds = 300;
+
+// A cloud of boxes of all sizes, some of which stand, over two planes.
+struct Cloud {
+  explicit Cloud(unsigned seed) : random(seed) {
+    for (int i = 0; i < kBodies; ++i) {
+      shapes.push_back(std::make_unique<btBoxShape>(btVector3(size(), size(), size())));
+      add(i % 5 == 0 ? 0 : 1, *shapes.back());
+      place(i);
+    }
+    add(0, floor);
+    add(0, wall);
+    bodies[kBodies + 1]->getWorldTransform().setOrigin({-1, 0, 0});
+  }
+  ~Cloud() {
+    for (auto& [pair, joint] : joints) world.removeConstraint(joint.get());
+    for (auto& body : bodies) {
+      if (body->isInWorld()) world.removeRigidBody(body.get());
+    }
+  }
+  Cloud(const Cloud&) = delete;
+  Cloud& operator=(const Cloud&) = delete;
+
+  btScalar between(double low, double high) {
+    return to_scalar(std::uniform_real_distribution<double>(low, high)(random));
+  }
+  btScalar size() { return to_scalar(std::exp(static_cast<double>(between(std::log(0.01), std::log(0.6))))); }
+  int any() { return std::uniform_int_distribution<int>(0, kBodies - 1)(random); }
+
+  void add(double mass, btCollisionShape& shape) {
+    bodies.push_back(std::make_unique<btRigidBody>(to_scalar(mass), nullptr, &shape, btVector3(1, 1, 1)));
+    bodies.back()->setActivationState(DISABLE_DEACTIVATION);
+    world.addRigidBody(bodies.back().get());
+  }
+  btTransform turned(const btVector3& at) {
+    return btTransform(btQuaternion(between(-3, 3), between(-3, 3), between(-3, 3)), at);
+  }
+  void place(int i) {
+    bodies[static_cast<std::size_t>(i)]->setWorldTransform(turned({between(-2, 2), between(-2, 2), between(-0.5, 2)}));
+  }
+  void nudge(int i) {
+    btTransform& at = bodies[static_cast<std::size_t>(i)]->getWorldTransform();
+    at.setOrigin(at.getOrigin() + btVector3(between(-0.02, 0.02), between(-0.02, 0.02), between(-0.02, 0.02)));
+  }
+
+  // something happens
+  void change() {
+    for (int i = 0; i < kBodies; ++i) nudge(i);
+    place(any());
+    const int what = std::uniform_int_distribution<int>(0, 5)(random);
+    btRigidBody& one = *bodies[static_cast<std::size_t>(any())];
+    if (what == 0) world.set_apart(one, std::uniform_int_distribution<int>(-1, 2)(random));
+    if (what == 1) floor_at().setRotation(btQuaternion(between(-0.3, 0.3), between(-0.3, 0.3), 0));
+    if (what == 2) floor_at().setOrigin({0, 0, between(-0.4, 0.4)});
+    if (what == 3) join_or_part();
+    if (what == 4 && one.isInWorld() && one.getNumConstraintRefs() == 0) {
+      world.removeRigidBody(&one);
+    } else if (what == 5) {
+      for (auto& body : bodies) {
+        if (!body->isInWorld()) world.addRigidBody(body.get());
+      }
+    }
+  }
+  btTransform& floor_at() { return bodies[kBodies]->getWorldTransform(); }
+  void join_or_part() {
+    const auto pair = std::minmax(any(), any());
+    btRigidBody& a = *bodies[static_cast<std::size_t>(pair.first)];
+    btRigidBody& b = *bodies[static_cast<std::size_t>(pair.second)];
+    if (joints.size() > 20) {
+      world.removeConstraint(joints.begin()->second.get());
+      joints.erase(joints.begin());
+    } else if (&a != &b && !joints.contains(pair) && a.isInWorld() && b.isInWorld()) {
+      auto& joint = joints[pair];
+      joint = std::make_unique<JointConstraint>(a, b, btTransform::getIdentity(), btTransform::getIdentity());
+      world.addConstraint(joint.get());
+    }
+  }
+
+  bool may_collide(std::size_t i, std::size_t k) const {
+    const btRigidBody& a = *bodies[i];
+    const btRigidBody& b = *bodies[k];
+    if (!a.isInWorld() || !b.isInWorld()) return false;
+    if (a.isStaticObject() && b.isStaticObject()) return false;
+    if (a.getUserIndex2() >= 0 && a.getUserIndex2() == b.getUserIndex2()) return false;
+    return !joints.contains({static_cast<int>(i), static_cast<int>(k)});
+  }
+  // metres between the two as the broadphase sees them; below 0: they overlap
+  double distance(std::size_t i, std::size_t k) const {
+    Vec3 low[2], high[2];
+    box(i, low[0], high[0]);
+    if (k >= kBodies) {
+      const auto& plane = static_cast<const btStaticPlaneShape&>(*bodies[k]->getCollisionShape());
+      const Vec3 normal = from_bt(bodies[k]->getWorldTransform().getBasis() * plane.getPlaneNormal());
+      double least = 1e9;
+      for (int corner = 0; corner < 8; ++corner) {
+        const Vec3 at((corner & 1) ? low[0].x : high[0].x, (corner & 2) ? low[0].y : high[0].y,
+                      (corner & 4) ? low[0].z : high[0].z);
+        least = std::min(least, glm::dot(normal, at - from_bt(bodies[k]->getWorldTransform().getOrigin())));
+      }
+      return least;
+    }
+    box(k, low[1], high[1]);
+    double gap = -1e9;
+    for (int axis = 0; axis < 3; ++axis)
+      gap = std::max({gap, low[0][axis] - high[1][axis], low[1][axis] - high[0][axis]});
+    return gap;
+  }
+  void box(std::size_t i, Vec3& low, Vec3& high) const {
+    btVector3 a, b;
+    bodies[i]->getCollisionShape()->getAabb(bodies[i]->getWorldTransform(), a, b);
+    low = from_bt(a);
+    high = from_bt(b);
+  }
+
+  std::mt19937 random;
+  std::vector<std::unique_ptr<btBoxShape>> shapes;
+  btStaticPlaneShape floor{btVector3(0, 0, 1), 0};
+  btStaticPlaneShape wall{btVector3(1, 0, 0), 0};
+  std::vector<std::unique_ptr<btRigidBody>> bodies;
+  std::map<std::pair<int, int>, std::unique_ptr<JointConstraint>> joints;
+  IslandWorld world{WorldSetup{kFat, 20}};
+};
+
+TEST(Broadphase, ItsPairsAreThoseThatLookingAtEverythingFinds) {
+  Cloud cloud(4711);
+  int found = 0, left_out = 0, forbidden = 0;
+  for (int round = 0; round < kRounds; ++round) {
+    cloud.change();
+    cloud.world.performDiscreteCollisionDetection();
+    for (std::size_t i = 0; i < kBodies; ++i) {
+      for (std::size_t k = i + 1; k < cloud.bodies.size(); ++k) {
+        btRigidBody& a = *cloud.bodies[i];
+        btRigidBody& b = *cloud.bodies[k];
+        const bool there = a.isInWorld() && b.isInWorld() &&
+                           cloud.world.getPairCache()->findPair(a.getBroadphaseHandle(), b.getBroadphaseHandle());
+        const bool to_plane = k >= kBodies;
+        const double distance = cloud.distance(i, k);
+        if (!cloud.may_collide(i, k)) {
+          ASSERT_FALSE(there) << round << ": " << i << ' ' << k;
+          if (distance < 0) ++forbidden;
+          continue;
+        }
+        // from a plane a contact begins as far as the part's own threshold says
+        const double reach = static_cast<double>(a.getCollisionShape()->getContactBreakingThreshold(0.02F));
+        const double sure = kNear + (to_plane ? reach : kNear);
+        // a box that has not been left yet may be larger by twice the margin, and its corner nearer by √3 than its side
+        const double most = to_plane ? std::sqrt(3.0) * (kNear + 2 * kFat) + reach : sure + 4 * kFat;
+        if (distance < sure - 1e-4) {
+          ASSERT_TRUE(there) << round << ": " << i << ' ' << k << " are " << distance << " m apart";
+          ++found;
+        } else if (distance > most + 1e-4) {
+          ASSERT_FALSE(there) << round << ": " << i << ' ' << k << " are " << distance << " m apart";
+          ++left_out;
+        }
+      }
+    }
+  }
+  EXPECT_GT(found, 1000);
+  EXPECT_GT(left_out, 100000);
+  EXPECT_GT(forbidden, 100);
+}
+
+TEST(Broadphase, ABoxesQueryFindsWhatLiesInIt) {
+  Cloud cloud(99);
+  cloud.world.performDiscreteCollisionDetection();
+  struct Named : btBroadphaseAabbCallback {
+    bool process(const btBroadphaseProxy* proxy) override {
+      return named.insert(static_cast<const btCollisionObject*>(proxy->m_clientObject)).second;
+    }
+    std::set<const btCollisionObject*> named;
+  } inside;
+  const Vec3 low(-1, -1, -1), high(0.5, 1, 1);
+  cloud.world.getBroadphase()->aabbTest(to_bt(low), to_bt(high), inside);
+  int counted = 0;
+  for (std::size_t i = 0; i < kBodies; ++i) {
+    Vec3 a, b;
+    cloud.box(i, a, b);
+    const bool meets = glm::all(glm::lessThan(a, high)) && glm::all(glm::lessThan(low, b));
+    if (!meets) continue;
+    EXPECT_TRUE(inside.named.contains(cloud.bodies[i].get())) << i;
+    ++counted;
+  }
+  EXPECT_GT(counted, 5);
+  EXPECT_LT(inside.named.size(), cloud.bodies.size());
+  EXPECT_TRUE(inside.named.contains(cloud.bodies[kBodies].get()));  // a plane is everywhere
+}
+
+}  // namespace
+}  // namespace limber
