@@ -131,6 +131,7 @@ void IslandWorld::look_anew(btTypedConstraint& joint) {
 }
 
 void IslandWorld::predictUnconstraintMotion(btScalar h) {
+  BT_PROFILE("predictUnconstraintMotion");
   for (int i = 0; i < m_nonStaticRigidBodies.size(); ++i) {
     btRigidBody& body = *m_nonStaticRigidBodies[i];
     if (body.getLinearDamping() != 0 || body.getAngularDamping() != 0) body.applyDamping(h);
@@ -140,10 +141,12 @@ void IslandWorld::predictUnconstraintMotion(btScalar h) {
 void IslandWorld::createPredictiveContacts(btScalar) {}  // no continuous collision
 
 void IslandWorld::updateAabbs() {
+  BT_PROFILE("updateAabbs");
   for (int i = 0; i < m_collisionObjects.size(); ++i) updateSingleAabb(m_collisionObjects[i]);
 }
 
 void IslandWorld::integrateTransforms(btScalar h) {
+  BT_PROFILE("integrateTransforms");
   btTransform moved;
   for (int i = 0; i < m_nonStaticRigidBodies.size(); ++i) {
     btRigidBody& body = *m_nonStaticRigidBodies[i];
