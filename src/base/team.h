@@ -50,4 +50,14 @@ class Team {
   std::vector<std::thread> helpers_;
 };
 
+/// As Team::run; without a team the caller does all pieces, in order, as member 0.
+template <class Work>
+void share_out(Team* team, int pieces, Work&& work) {
+  if (team != nullptr && pieces > 1) {
+    team->run(pieces, work);
+  } else {
+    for (int piece = 0; piece < pieces; ++piece) work(piece, 0);
+  }
+}
+
 }  // namespace limber

@@ -1,6 +1,7 @@
 // Boxes that meet, found through two trees; planes by their distance.
 #include "sim/broadphase.h"
 
+#include <algorithm>
 #include <utility>
 
 namespace limber {
@@ -18,6 +19,14 @@ struct Broadphase::Proxy : btBroadphaseProxy {
 
   btCollisionObject& object() const { return *static_cast<btCollisionObject*>(m_clientObject); }
 
+  // as a plane: was it moved
+  bool look_at_plane() {
+    const auto& shape = *static_cast<const btStaticPlaneShape*>(object().getCollisionShape());
+    const btTransform& at = object().getWorldTransform();
+    const btVector3 before = std::exchange(normal, at.getBasis() * shape.getPlaneNormal());
+    const btScalar far = std::exchange(distance, shape.getPlaneConstant() + normal.dot(at.getOrigin()));
+    return normal != before || distance != far;
+  }
   // as a plane: is the other one so near to it that a contact can begin
   bool reaches(const Proxy& other) const {
     const btDbvtVolume& box = other.leaf->volume;
@@ -29,7 +38,33 @@ struct Broadphase::Proxy : btBroadphaseProxy {
   }
 };
 
+struct Broadphase::Search {
+  std::vector<std::pair<Proxy*, Proxy*>> found;
+  std::vector<const btDbvtNode*> stack;
+};
+
 namespace {
+
+// Marked objects that one thread looks around in one go; it changes no result.
+constexpr int kPiece = 64;
+
+// all proxies in the tree whose boxes meet this one
+template <class Proxy, class Found>
+void meet(const btDbvt& tree, const btDbvtVolume& box, std::vector<const btDbvtNode*>& stack, Found&& found) {
+  if (tree.m_root == nullptr) return;
+  stack.assign(1, tree.m_root);
+  while (!stack.empty()) {
+    const btDbvtNode* node = stack.back();
+    stack.pop_back();
+    if (!Intersect(node->volume, box)) continue;
+    if (node->isinternal()) {
+      stack.push_back(node->childs[0]);
+      stack.push_back(node->childs[1]);
+    } else {
+      found(*static_cast<Proxy*>(node->data));
+    }
+  }
+}
 
 bool may_collide(const btBroadphaseProxy& a, const btBroadphaseProxy& b) {
   if ((a.m_collisionFilterGroup & b.m_collisionFilterMask) == 0) return false;
@@ -42,25 +77,10 @@ bool may_collide(const btBroadphaseProxy& a, const btBroadphaseProxy& b) {
 
 }  // namespace
 
-Broadphase::~Broadphase() = default;
+Broadphase::Broadphase(double margin, Team* team)
+    : margin_(to_scalar(margin)), team_(team), searches_(std::make_unique<std::vector<Search>>()) {}
 
-template <class Found>
-void Broadphase::meet(const btDbvt& tree, const btDbvtVolume& box, Found&& found) {
-  if (tree.m_root == nullptr) return;
-  stack_.resizeNoInitialize(0);
-  stack_.push_back(tree.m_root);
-  while (stack_.size() > 0) {
-    const btDbvtNode* node = stack_[stack_.size() - 1];
-    stack_.pop_back();
-    if (!Intersect(node->volume, box)) continue;
-    if (node->isinternal()) {
-      stack_.push_back(node->childs[0]);
-      stack_.push_back(node->childs[1]);
-    } else {
-      found(*static_cast<Proxy*>(node->data));
-    }
-  }
-}
+Broadphase::~Broadphase() = default;
 
 void Broadphase::mark(Proxy& proxy) {
   if (proxy.marked != 0) return;
@@ -69,12 +89,12 @@ void Broadphase::mark(Proxy& proxy) {
 }
 
 btBroadphaseProxy* Broadphase::createProxy(const btVector3& low, const btVector3& high, int shape, void* object,
-                                           int group, int mask, btDispatcher* dispatcher) {
+                                           int group, int mask, btDispatcher*) {
   auto* proxy = new Proxy(low, high, object, group, mask);
   proxy->m_uniqueId = ++last_id_;
   if (shape == STATIC_PLANE_PROXYTYPE) {
     planes_.push_back(proxy);
-    setAabb(proxy, low, high, dispatcher);
+    proxy->look_at_plane();
   } else {
     const btCollisionObject& of = proxy->object();
     proxy->moves = !of.isStaticObject();
@@ -103,28 +123,36 @@ void Broadphase::look_anew(btBroadphaseProxy* of) {
   mark(proxy);
 }
 
-void Broadphase::setAabb(btBroadphaseProxy* of, const btVector3& low, const btVector3& high, btDispatcher*) {
+bool Broadphase::look(btCollisionObject& object) {
+  if (object.getBroadphaseHandle() == nullptr) return false;
+  Proxy& proxy = *static_cast<Proxy*>(object.getBroadphaseHandle());
+  if (proxy.leaf == nullptr) return proxy.look_at_plane();
+  btVector3 low;
+  btVector3 high;
+  object.getCollisionShape()->getAabb(object.getWorldTransform(), low, high);
+  const btVector3 ahead(gContactBreakingThreshold, gContactBreakingThreshold, gContactBreakingThreshold);
+  proxy.m_aabbMin = low - ahead;
+  proxy.m_aabbMax = high + ahead;
+  const btDbvtVolume box = btDbvtVolume::FromMM(proxy.m_aabbMin, proxy.m_aabbMax);
+  return proxy.moves ? !proxy.leaf->volume.Contain(box) : NotEqual(proxy.leaf->volume, box);
+}
+
+void Broadphase::move(btBroadphaseProxy* of) {
   Proxy& proxy = *static_cast<Proxy*>(of);
-  proxy.m_aabbMin = low;
-  proxy.m_aabbMax = high;
-  if (proxy.leaf == nullptr) {
-    const auto& shape = *static_cast<const btStaticPlaneShape*>(proxy.object().getCollisionShape());
-    const btTransform& at = proxy.object().getWorldTransform();
-    const btVector3 normal = at.getBasis() * shape.getPlaneNormal();
-    const btScalar distance = shape.getPlaneConstant() + normal.dot(at.getOrigin());
-    if (proxy.normal == normal && proxy.distance == distance) return;
-    proxy.normal = normal;
-    proxy.distance = distance;
-    mark(proxy);
-    return;
-  }
-  btDbvtVolume box = btDbvtVolume::FromMM(low, high);
+  mark(proxy);
+  if (proxy.leaf == nullptr) return;
+  btDbvtVolume box = btDbvtVolume::FromMM(proxy.m_aabbMin, proxy.m_aabbMax);
   if (proxy.moves) {
-    if (moving_.update(proxy.leaf, box, margin_)) mark(proxy);
-  } else if (NotEqual(box, proxy.leaf->volume)) {
+    moving_.update(proxy.leaf, box, margin_);
+  } else {
     standing_.update(proxy.leaf, box);
-    mark(proxy);
   }
+}
+
+void Broadphase::setAabb(btBroadphaseProxy* proxy, const btVector3& low, const btVector3& high, btDispatcher*) {
+  proxy->m_aabbMin = low;
+  proxy->m_aabbMax = high;
+  move(proxy);
 }
 
 void Broadphase::getAabb(btBroadphaseProxy* proxy, btVector3& low, btVector3& high) const {
@@ -132,28 +160,32 @@ void Broadphase::getAabb(btBroadphaseProxy* proxy, btVector3& low, btVector3& hi
   high = proxy->m_aabbMax;
 }
 
-void Broadphase::add_pair(Proxy& a, Proxy& b) {
-  // of two that are marked, the later one finds the other
-  if (&a == &b || b.marked > a.marked) return;
-  if (may_collide(a, b)) pairs_.addOverlappingPair(&a, &b);
-}
-
-void Broadphase::find_pairs_of(Proxy& proxy) {
-  const auto found = [&](Proxy& other) { add_pair(proxy, other); };
+void Broadphase::search_around(Proxy& proxy, Search& search) const {
+  const auto found = [&](Proxy& other) {
+    // of two that are marked, the later one finds the other
+    if (&proxy == &other || other.marked > proxy.marked) return;
+    if (may_collide(proxy, other)) search.found.emplace_back(&proxy, &other);
+  };
   if (proxy.leaf == nullptr) {
-    btVector3 low;
-    btVector3 high;
-    getBroadphaseAabb(low, high);
-    meet(moving_, btDbvtVolume::FromMM(low, high), [&](Proxy& other) {
-      if (proxy.reaches(other)) add_pair(proxy, other);
+    if (moving_.m_root == nullptr) return;
+    meet<Proxy>(moving_, moving_.m_root->volume, search.stack, [&](Proxy& other) {
+      if (proxy.reaches(other)) found(other);
     });
     return;
   }
-  meet(moving_, proxy.leaf->volume, found);
+  meet<Proxy>(moving_, proxy.leaf->volume, search.stack, found);
   if (!proxy.moves) return;
-  meet(standing_, proxy.leaf->volume, found);
+  meet<Proxy>(standing_, proxy.leaf->volume, search.stack, found);
   for (int i = 0; i < planes_.size(); i++) {
-    if (planes_[i]->reaches(proxy)) add_pair(proxy, *planes_[i]);
+    if (planes_[i]->reaches(proxy)) found(*planes_[i]);
+  }
+}
+
+void Broadphase::search(int piece, Search& search) const {
+  search.found.clear();
+  const int end = std::min((piece + 1) * kPiece, marked_.size());
+  for (int i = piece * kPiece; i < end; i++) {
+    if (marked_[i] != nullptr) search_around(*marked_[i], search);
   }
 }
 
@@ -176,8 +208,11 @@ void Broadphase::calculateOverlappingPairs(btDispatcher* dispatcher) {
   moving_.optimizeIncremental(1);
   if (marked_.size() == 0) return;
   forget_parted(dispatcher);
-  for (int i = 0; i < marked_.size(); i++) {
-    if (marked_[i] != nullptr) find_pairs_of(*marked_[i]);
+  const int pieces = (marked_.size() + kPiece - 1) / kPiece;
+  if (searches_->size() < static_cast<std::size_t>(pieces)) searches_->resize(static_cast<std::size_t>(pieces));
+  share_out(team_, pieces, [&](int piece, int) { search(piece, (*searches_)[static_cast<std::size_t>(piece)]); });
+  for (int piece = 0; piece < pieces; piece++) {
+    for (const auto& [a, b] : (*searches_)[static_cast<std::size_t>(piece)].found) pairs_.addOverlappingPair(a, b);
   }
   for (int i = 0; i < marked_.size(); i++) {
     if (marked_[i] == nullptr) continue;
@@ -190,8 +225,9 @@ void Broadphase::calculateOverlappingPairs(btDispatcher* dispatcher) {
 void Broadphase::aabbTest(const btVector3& low, const btVector3& high, btBroadphaseAabbCallback& callback) {
   const btDbvtVolume box = btDbvtVolume::FromMM(low, high);
   const auto found = [&](Proxy& proxy) { callback.process(&proxy); };
-  meet(moving_, box, found);
-  meet(standing_, box, found);
+  std::vector<const btDbvtNode*> stack;
+  meet<Proxy>(moving_, box, stack, found);
+  meet<Proxy>(standing_, box, stack, found);
   for (int i = 0; i < planes_.size(); i++) callback.process(planes_[i]);
 }
 

@@ -1,6 +1,10 @@
 // Broadphase: which objects come so near to each other that contacts are looked for.
 #pragma once
 
+#include <memory>
+#include <vector>
+
+#include "base/team.h"
 #include "sim/bullet.h"
 
 #include <BulletCollision/BroadphaseCollision/btDbvt.h>
@@ -18,13 +22,18 @@ class Broadphase : public btBroadphaseInterface {
   BT_DECLARE_ALIGNED_ALLOCATOR();
 
   /// Metres that the boxes of what moves are larger: so far it moves before its neighbours are looked for again.
-  explicit Broadphase(double margin) : margin_(to_scalar(margin)) {}
+  /// `team`, which may be null, looks for pairs side by side.
+  Broadphase(double margin, Team* team);
   ~Broadphase() override;
   Broadphase(const Broadphase&) = delete;
   Broadphase& operator=(const Broadphase&) = delete;
 
   /// Who may collide with this one has changed: from the next step on its pairs are those that may.
   void look_anew(btBroadphaseProxy* proxy);
+
+  /// Has this one left its box, or was it moved though it stands? Then move() is to follow. [any thread, each another]
+  static bool look(btCollisionObject& object);
+  void move(btBroadphaseProxy* proxy);
 
   btBroadphaseProxy* createProxy(const btVector3& low, const btVector3& high, int shape, void* object, int group,
                                  int mask, btDispatcher* dispatcher) override;
@@ -48,11 +57,11 @@ class Broadphase : public btBroadphaseInterface {
  private:
   struct Proxy;
 
-  template <class Found>
-  void meet(const btDbvt& tree, const btDbvtVolume& box, Found&& found);
+  struct Search;  // what is found around some of those that are marked
+
   void mark(Proxy& proxy);
-  void find_pairs_of(Proxy& proxy);
-  void add_pair(Proxy& a, Proxy& b);
+  void search(int piece, Search& search) const;
+  void search_around(Proxy& proxy, Search& search) const;
   void forget_parted(btDispatcher* dispatcher);
 
   btScalar margin_;
@@ -61,8 +70,10 @@ class Broadphase : public btBroadphaseInterface {
   btAlignedObjectArray<Proxy*> planes_;
   btAlignedObjectArray<Proxy*> marked_;  // whose neighbours are to be looked for; null: gone since
   btHashedOverlappingPairCache pairs_;
-  btAlignedObjectArray<const btDbvtNode*> stack_;
   int last_id_ = 0;
+  Team* team_;
+  // on the heap, and nothing that outlives a step
+  std::unique_ptr<std::vector<Search>> searches_;
 };
 
 }  // namespace limber

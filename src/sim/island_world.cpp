@@ -10,6 +10,10 @@ namespace {
 constexpr int kBatch = 16;
 /// Joints and contact pairs of a step that are worth waking others for; it changes no result.
 constexpr int kTeamWork = 64;
+/// Objects that one thread takes in one go; it changes no result.
+constexpr int kPiece = 64;
+/// So many objects ahead their memory is asked for.
+constexpr int kAhead = 2;
 /// Contact pairs in Bullet's pool.
 constexpr int kPool = 64;
 
@@ -26,6 +30,13 @@ void accumulate(btAlignedObjectArray<int>& start, btAlignedObjectArray<int>& cur
 void zero(btAlignedObjectArray<int>& a, int size) {
   a.resizeNoInitialize(size);
   for (int i = 0; i < size; ++i) a[i] = 0;
+}
+
+template <class Object>
+void prefetch(const Object& object) {
+  constexpr std::size_t kLine = 64;
+  const auto* bytes = reinterpret_cast<const char*>(&object);
+  for (std::size_t at = 0; at < sizeof(Object); at += kLine) __builtin_prefetch(bytes + at);
 }
 
 void leave_gyroscopic_torque_to_us(btRigidBody& body) {
@@ -50,7 +61,7 @@ WorldParts::WorldParts(const WorldSetup& setup) : memory(BulletMemory::current()
   pools.m_defaultMaxPersistentManifoldPoolSize = pools.m_defaultMaxCollisionAlgorithmPoolSize = kPool;
   configuration = std::make_unique<btDefaultCollisionConfiguration>(pools);
   dispatcher = std::make_unique<Dispatcher>(configuration.get());
-  broadphase = std::make_unique<Broadphase>(setup.broadphase_margin);
+  broadphase = std::make_unique<Broadphase>(setup.broadphase_margin, setup.team.get());
   const BulletMemory::Scope heap(nullptr);
   for (int i = 0; i < (setup.team ? setup.team->members() : 1); ++i) {
     solvers.push_back(std::make_unique<IslandSolver>());
@@ -130,30 +141,46 @@ void IslandWorld::look_anew(btTypedConstraint& joint) {
   }
 }
 
+// Calls work(object) for each, side by side where there is a team; the work must be the same in any order.
+template <class Object, class Work>
+void IslandWorld::for_each(const btAlignedObjectArray<Object*>& objects, Work&& work) {
+  const int count = objects.size();
+  share_out(team.get(), (count + kPiece - 1) / kPiece, [&](int piece, int) {
+    const int end = std::min((piece + 1) * kPiece, count);
+    for (int i = piece * kPiece; i < end; ++i) {
+      if (i + kAhead < count) prefetch(*objects[i + kAhead]);
+      work(i, *objects[i]);
+    }
+  });
+}
+
 void IslandWorld::predictUnconstraintMotion(btScalar h) {
   BT_PROFILE("predictUnconstraintMotion");
-  for (int i = 0; i < m_nonStaticRigidBodies.size(); ++i) {
-    btRigidBody& body = *m_nonStaticRigidBodies[i];
+  for_each(m_nonStaticRigidBodies, [h](int, btRigidBody& body) {
     if (body.getLinearDamping() != 0 || body.getAngularDamping() != 0) body.applyDamping(h);
-  }
+  });
 }
 
 void IslandWorld::createPredictiveContacts(btScalar) {}  // no continuous collision
 
 void IslandWorld::updateAabbs() {
   BT_PROFILE("updateAabbs");
-  for (int i = 0; i < m_collisionObjects.size(); ++i) updateSingleAabb(m_collisionObjects[i]);
+  const int count = m_collisionObjects.size();
+  left_.resizeNoInitialize(count);
+  for_each(m_collisionObjects, [&](int i, btCollisionObject& object) { left_[i] = Broadphase::look(object); });
+  for (int i = 0; i < count; ++i) {
+    if (left_[i]) broadphase->move(m_collisionObjects[i]->getBroadphaseHandle());
+  }
 }
 
 void IslandWorld::integrateTransforms(btScalar h) {
   BT_PROFILE("integrateTransforms");
-  btTransform moved;
-  for (int i = 0; i < m_nonStaticRigidBodies.size(); ++i) {
-    btRigidBody& body = *m_nonStaticRigidBodies[i];
-    if (!body.isActive() || body.isStaticOrKinematicObject()) continue;
+  for_each(m_nonStaticRigidBodies, [h](int, btRigidBody& body) {
+    if (!body.isActive() || body.isStaticOrKinematicObject()) return;
+    btTransform moved;
     body.predictIntegratedTransform(h, moved);
     body.proceedToTransform(moved);
-  }
+  });
 }
 
 void IslandWorld::updateActivationState(btScalar) {}  // none sleeps
@@ -263,13 +290,9 @@ void IslandWorld::solve_batch(int batch, IslandSolver& solver, const btContactSo
 // Islands share bodies that don't move alone, which solvers only read (none is kinematic: those would be written to).
 void IslandWorld::solve_islands(const btContactSolverInfo& info) {
   const BulletMemory::Scope heap(nullptr);  // the solvers' rows; helpers of a team have no other memory
-  const int batches = batches_.size() - 1;
-  if (team != nullptr && joints_.size() + contacts_.size() >= kTeamWork) {
-    team->run(batches,
-              [&](int batch, int member) { solve_batch(batch, *solvers[static_cast<std::size_t>(member)], info); });
-  } else {
-    for (int batch = 0; batch < batches; ++batch) solve_batch(batch, *solvers.front(), info);
-  }
+  Team* const helpers = joints_.size() + contacts_.size() >= kTeamWork ? team.get() : nullptr;
+  share_out(helpers, batches_.size() - 1,
+            [&](int batch, int member) { solve_batch(batch, *solvers[static_cast<std::size_t>(member)], info); });
 }
 
 void IslandWorld::set_direct(bool on) {

@@ -127,6 +127,8 @@ class IslandWorld : private WorldParts, public btDiscreteDynamicsWorld {
     btPersistentManifold* manifold;
   };
 
+  template <class Object, class Work>
+  void for_each(const btAlignedObjectArray<Object*>& objects, Work&& work);
   void look_anew(btTypedConstraint& joint);
   void sort_bodies();
   void sort_joints();
@@ -147,6 +149,7 @@ class IslandWorld : private WorldParts, public btDiscreteDynamicsWorld {
   btAlignedObjectArray<btTypedConstraint*> joints_;
   btAlignedObjectArray<Touch> touches_;
   btAlignedObjectArray<btPersistentManifold*> contacts_;
+  btAlignedObjectArray<char> left_;    // of each object: its box
   btAlignedObjectArray<int> batches_;  // islands of batch i: batches_[i] up to batches_[i + 1]
 };
 
