@@ -82,19 +82,29 @@ IslandWorld::IslandWorld(const WorldSetup& setup)
 
 IslandWorld::~IslandWorld() = default;
 
+// Calls work(object) for each, side by side where there is a team; the work must be the same in any order.
+template <class Object, class Work>
+void IslandWorld::for_each(const btAlignedObjectArray<Object*>& objects, Work&& work) {
+  const int count = objects.size();
+  share_out(team.get(), (count + kPiece - 1) / kPiece, [&](int piece, int) {
+    const int end = std::min((piece + 1) * kPiece, count);
+    for (int i = piece * kPiece; i < end; ++i) {
+      if (i + kAhead < count) prefetch(*objects[i + kAhead]);
+      work(i, *objects[i]);
+    }
+  });
+}
+
 void IslandWorld::step(double h, int substeps) {
   if (!(h > 0) || substeps <= 0) return;
   const BulletMemory::Scope scope(memory);
   const btScalar step_length = to_scalar(h);
-  saveKinematicState(step_length * static_cast<btScalar>(substeps));
-  applyGravity();
+  for_each(m_nonStaticRigidBodies, [](int, btRigidBody& body) { body.applyGravity(); });
   for (int i = 0; i < substeps; ++i) internalSingleStepSimulation(step_length);
-  clearForces();
-  for (int i = 0; i < m_constraints.size(); ++i) {
-    if (m_constraints[i]->getConstraintType() == JointConstraint::kType) {
-      static_cast<JointConstraint*>(m_constraints[i])->end_tick();
-    }
-  }
+  for_each(m_nonStaticRigidBodies, [](int, btRigidBody& body) { body.clearForces(); });
+  for_each(m_constraints, [](int, btTypedConstraint& constraint) {
+    if (constraint.getConstraintType() == JointConstraint::kType) static_cast<JointConstraint&>(constraint).end_tick();
+  });
 }
 
 void IslandWorld::addConstraint(btTypedConstraint* constraint, bool disable_collisions) {
@@ -139,19 +149,6 @@ void IslandWorld::look_anew(btTypedConstraint& joint) {
   for (btRigidBody* body : {&joint.getRigidBodyA(), &joint.getRigidBodyB()}) {
     if (body->getBroadphaseHandle() != nullptr) broadphase->look_anew(body->getBroadphaseHandle());
   }
-}
-
-// Calls work(object) for each, side by side where there is a team; the work must be the same in any order.
-template <class Object, class Work>
-void IslandWorld::for_each(const btAlignedObjectArray<Object*>& objects, Work&& work) {
-  const int count = objects.size();
-  share_out(team.get(), (count + kPiece - 1) / kPiece, [&](int piece, int) {
-    const int end = std::min((piece + 1) * kPiece, count);
-    for (int i = piece * kPiece; i < end; ++i) {
-      if (i + kAhead < count) prefetch(*objects[i + kAhead]);
-      work(i, *objects[i]);
-    }
-  });
 }
 
 void IslandWorld::predictUnconstraintMotion(btScalar h) {
@@ -221,15 +218,18 @@ void IslandWorld::sort_bodies() {
 void IslandWorld::sort_joints() {
   const int count = m_constraints.size();
   zero(joint_start_, island_count_ + 1);
+  island_of_joint_.resizeNoInitialize(count);
+  for_each(m_constraints, [&](int i, btTypedConstraint& joint) {
+    const int tag = island_tag(joint.getRigidBodyA(), joint.getRigidBodyB());
+    island_of_joint_[i] = tag < 0 ? -1 : island_of_tag_[tag];
+  });
   for (int i = 0; i < count; ++i) {
-    const int tag = island_tag(m_constraints[i]->getRigidBodyA(), m_constraints[i]->getRigidBodyB());
-    if (tag >= 0) ++joint_start_[island_of_tag_[tag] + 1];
+    if (island_of_joint_[i] >= 0) ++joint_start_[island_of_joint_[i] + 1];
   }
   accumulate(joint_start_, cursor_);
   joints_.resizeNoInitialize(count);
   for (int i = 0; i < count; ++i) {
-    const int tag = island_tag(m_constraints[i]->getRigidBodyA(), m_constraints[i]->getRigidBodyB());
-    if (tag >= 0) joints_[cursor_[island_of_tag_[tag]]++] = m_constraints[i];
+    if (island_of_joint_[i] >= 0) joints_[cursor_[island_of_joint_[i]]++] = m_constraints[i];
   }
 }
 

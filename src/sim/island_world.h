@@ -81,8 +81,8 @@ struct WorldParts {
 
 /// Joints and contacts of an island are solved in an order that depends on that island alone (joints as added,
 /// contacts by the parts' age), so an island moves the same, bit for bit, alone or among others. Bodies are the
-/// caller's, without motion states, never sleep, and have no continuous collision. What it keeps from step to step lies
-/// in the memory of the BulletMemory::Scope that it was made in. [sim]
+/// caller's, without motion states, never sleep, are not kinematic, and have no continuous collision. What it keeps
+/// from step to step lies in the memory of the BulletMemory::Scope that it was made in. [sim]
 class IslandWorld : private WorldParts, public btDiscreteDynamicsWorld {
  public:
   BT_DECLARE_ALIGNED_ALLOCATOR();
@@ -143,6 +143,7 @@ class IslandWorld : private WorldParts, public btDiscreteDynamicsWorld {
   btAlignedObjectArray<int> island_of_tag_;
   btAlignedObjectArray<int> body_start_;
   btAlignedObjectArray<int> joint_start_;
+  btAlignedObjectArray<int> island_of_joint_;
   btAlignedObjectArray<int> contact_start_;
   btAlignedObjectArray<int> cursor_;
   btAlignedObjectArray<btCollisionObject*> bodies_;
