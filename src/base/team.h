@@ -1,6 +1,7 @@
 // Team: some threads that share out the pieces of one work; the caller is one of them.
 #pragma once
 
+#include <algorithm>
 #include <atomic>
 #include <cstdint>
 #include <memory>
@@ -58,6 +59,17 @@ void share_out(Team* team, int pieces, Work&& work) {
   } else {
     for (int piece = 0; piece < pieces; ++piece) work(piece, 0);
   }
+}
+
+/// Shares out the places from 0 to count - 1 in ranges of kPlaces: work(range, first, end) for each.
+constexpr int kPlaces = 64;
+constexpr int ranges_of(int count) { return (count + kPlaces - 1) / kPlaces; }
+template <class Work>
+void share_out_places(Team* team, int count, Work&& work) {
+  share_out(team, ranges_of(count), [&](int range, int) {
+    const int first = range * kPlaces;
+    work(range, first, std::min(first + kPlaces, count));
+  });
 }
 
 }  // namespace limber

@@ -38,15 +38,17 @@ struct Broadphase::Proxy : btBroadphaseProxy {
   }
 };
 
+// room for what is usual, so that nothing is allocated in a step
 struct Broadphase::Search {
+  Search() {
+    found.reserve(8 * kPlaces);
+    stack.reserve(256);
+  }
   std::vector<std::pair<Proxy*, Proxy*>> found;
   std::vector<const btDbvtNode*> stack;
 };
 
 namespace {
-
-// Marked objects that one thread looks around in one go; it changes no result.
-constexpr int kPiece = 64;
 
 // all proxies in the tree whose boxes meet this one
 template <class Proxy, class Found>
@@ -102,7 +104,13 @@ btBroadphaseProxy* Broadphase::createProxy(const btVector3& low, const btVector3
     proxy->leaf = (proxy->moves ? moving_ : standing_).insert(btDbvtVolume::FromMM(low, high), proxy);
   }
   mark(*proxy);
+  make_room(++count_);
   return proxy;
+}
+
+void Broadphase::make_room(int marked) {
+  const auto needed = static_cast<std::size_t>(ranges_of(marked));
+  if (searches_->size() < needed) searches_->resize(needed);
 }
 
 void Broadphase::destroyProxy(btBroadphaseProxy* of, btDispatcher* dispatcher) {
@@ -115,6 +123,7 @@ void Broadphase::destroyProxy(btBroadphaseProxy* of, btDispatcher* dispatcher) {
     (proxy->moves ? moving_ : standing_).remove(proxy->leaf);
   }
   delete proxy;
+  --count_;
 }
 
 void Broadphase::look_anew(btBroadphaseProxy* of) {
@@ -181,10 +190,9 @@ void Broadphase::search_around(Proxy& proxy, Search& search) const {
   }
 }
 
-void Broadphase::search(int piece, Search& search) const {
+void Broadphase::search(int first, int end, Search& search) const {
   search.found.clear();
-  const int end = std::min((piece + 1) * kPiece, marked_.size());
-  for (int i = piece * kPiece; i < end; i++) {
+  for (int i = first; i < end; i++) {
     if (marked_[i] != nullptr) search_around(*marked_[i], search);
   }
 }
@@ -208,11 +216,12 @@ void Broadphase::calculateOverlappingPairs(btDispatcher* dispatcher) {
   moving_.optimizeIncremental(1);
   if (marked_.size() == 0) return;
   forget_parted(dispatcher);
-  const int pieces = (marked_.size() + kPiece - 1) / kPiece;
-  if (searches_->size() < static_cast<std::size_t>(pieces)) searches_->resize(static_cast<std::size_t>(pieces));
-  share_out(team_, pieces, [&](int piece, int) { search(piece, (*searches_)[static_cast<std::size_t>(piece)]); });
-  for (int piece = 0; piece < pieces; piece++) {
-    for (const auto& [a, b] : (*searches_)[static_cast<std::size_t>(piece)].found) pairs_.addOverlappingPair(a, b);
+  make_room(marked_.size());
+  share_out_places(team_, marked_.size(), [&](int range, int first, int end) {
+    search(first, end, (*searches_)[static_cast<std::size_t>(range)]);
+  });
+  for (int range = 0; range < ranges_of(marked_.size()); range++) {
+    for (const auto& [a, b] : (*searches_)[static_cast<std::size_t>(range)].found) pairs_.addOverlappingPair(a, b);
   }
   for (int i = 0; i < marked_.size(); i++) {
     if (marked_[i] == nullptr) continue;

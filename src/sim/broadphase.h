@@ -59,8 +59,9 @@ class Broadphase : public btBroadphaseInterface {
 
   struct Search;  // what is found around some of those that are marked
 
+  void make_room(int marked);
   void mark(Proxy& proxy);
-  void search(int piece, Search& search) const;
+  void search(int first, int end, Search& search) const;
   void search_around(Proxy& proxy, Search& search) const;
   void forget_parted(btDispatcher* dispatcher);
 
@@ -71,6 +72,7 @@ class Broadphase : public btBroadphaseInterface {
   btAlignedObjectArray<Proxy*> marked_;  // whose neighbours are to be looked for; null: gone since
   btHashedOverlappingPairCache pairs_;
   int last_id_ = 0;
+  int count_ = 0;
   Team* team_;
   // on the heap, and nothing that outlives a step
   std::unique_ptr<std::vector<Search>> searches_;

@@ -10,8 +10,6 @@ namespace {
 constexpr int kBatch = 16;
 /// Joints and contact pairs of a step that are worth waking others for; it changes no result.
 constexpr int kTeamWork = 64;
-/// Objects that one thread takes in one go; it changes no result.
-constexpr int kPiece = 64;
 /// So many objects ahead their memory is asked for.
 constexpr int kAhead = 2;
 /// Contact pairs in Bullet's pool.
@@ -86,9 +84,8 @@ IslandWorld::~IslandWorld() = default;
 template <class Object, class Work>
 void IslandWorld::for_each(const btAlignedObjectArray<Object*>& objects, Work&& work) {
   const int count = objects.size();
-  share_out(team.get(), (count + kPiece - 1) / kPiece, [&](int piece, int) {
-    const int end = std::min((piece + 1) * kPiece, count);
-    for (int i = piece * kPiece; i < end; ++i) {
+  share_out_places(team.get(), count, [&](int, int first, int end) {
+    for (int i = first; i < end; ++i) {
       if (i + kAhead < count) prefetch(*objects[i + kAhead]);
       work(i, *objects[i]);
     }
