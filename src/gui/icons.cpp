@@ -57,6 +57,16 @@ void magnifier(const Pen& pen) {
   pen.line(pen.at(0.25F, 0.25F), pen.at(0.8F, 0.8F));
 }
 
+void double_arrow(const Pen& pen) {
+  pen.triangle(pen.at(-0.02F, -0.7F), pen.at(-0.95F, 0), pen.at(-0.02F, 0.7F));
+  pen.triangle(pen.at(0.93F, -0.7F), pen.at(0, 0), pen.at(0.93F, 0.7F));
+}
+
+void cross(const Pen& pen) {
+  pen.line(pen.at(-0.6F, -0.6F), pen.at(0.6F, 0.6F));
+  pen.line(pen.at(-0.6F, 0.6F), pen.at(0.6F, -0.6F));
+}
+
 void warning_sign(const Pen& pen) {
   pen.list.AddTriangle(pen.at(0, -0.85F), pen.at(0.95F, 0.75F), pen.at(-0.95F, 0.75F), pen.color, pen.width() * 0.7F);
   pen.line(pen.at(0, -0.3F), pen.at(0, 0.25F));
@@ -88,8 +98,7 @@ void draw_icon(Icon icon, float x, float y, float half, std::uint32_t color) {
       pen.triangle(pen.at(0.3F, -0.75F), pen.at(-0.85F, 0), pen.at(0.3F, 0.75F));
       break;
     case Icon::rewind:
-      pen.triangle(pen.at(-0.02F, -0.7F), pen.at(-0.95F, 0), pen.at(-0.02F, 0.7F));
-      pen.triangle(pen.at(0.93F, -0.7F), pen.at(0, 0), pen.at(0.93F, 0.7F));
+      double_arrow(pen);
       break;
     case Icon::record:
       pen.list.AddCircleFilled(pen.middle, half * 0.85F, color, 20);
@@ -111,8 +120,7 @@ void draw_icon(Icon icon, float x, float y, float half, std::uint32_t color) {
       warning_sign(pen);
       break;
     case Icon::close:
-      pen.line(pen.at(-0.6F, -0.6F), pen.at(0.6F, 0.6F));
-      pen.line(pen.at(-0.6F, 0.6F), pen.at(0.6F, -0.6F));
+      cross(pen);
       break;
     case Icon::plus:
       pen.line(pen.at(-0.75F, 0), pen.at(0.75F, 0));
