@@ -37,6 +37,9 @@ class ArmPresets {
   }
   /// Seconds of the last tick in which values went their way into Bullet.
   double of_values() { return engine().times().scripts + engine().times().effects; }
+  /// The parts' rows alone.
+  double store_parts() { return send({"/preset/store", {Arg::of("parts"), Arg::of("/physics/body/*/part/*/*")}}); }
+  double newest_numbers() { return static_cast<double>(engine().presets().list().back()->values.size()); }
   double preset(const char* what, const char* name) { return send({fmt::format("/preset/{}", what), {Arg::of(name)}}); }
 
  private:
@@ -61,6 +64,8 @@ Json bench_preset(const BenchOptions& options) {
   ArmPresets bench(1000);
   bench.send({"/physics/part/restitution", {Arg::of(0.1)}});
   const double sudden_store = bench.preset("store", "sudden");
+  const double sudden_parts = bench.store_parts();
+  const double parts_numbers = bench.newest_numbers();
   // something comes, and for a while nothing does: the next store has been made ready
   LIMBER_CHECK(bench.engine().world().add_body("more").ok());
   bench.ticks(200);
@@ -69,8 +74,9 @@ Json bench_preset(const BenchOptions& options) {
   LIMBER_CHECK(bench.engine().world().add_body("another").ok());
   bench.ticks(2);
   const double soon_store = bench.preset("store", "soon");
-  Samples store, recall;
+  Samples store, parts, recall;
   for (int i = 0; i < count; i++) store.add(bench.preset("store", "again"));
+  for (int i = 0; i < count; i++) parts.add(bench.store_parts());
 
   double value = 0.1;
   for (const char* row : {"mass", "linear_damping", "angular_damping", "friction", "rolling_friction", "restitution"})
@@ -101,6 +107,9 @@ Json bench_preset(const BenchOptions& options) {
           {"first_store_ms", rounded(first_store * 1e3, 2)},
           {"soon_store_ms", rounded(soon_store * 1e3, 2)},
           {"store_ms", least_and_median(store)},
+          {"parts_numbers", parts_numbers},
+          {"sudden_parts_ms", rounded(sudden_parts * 1e3, 2)},
+          {"parts_ms", least_and_median(parts)},
           {"first_recall_ms", rounded(first_recall * 1e3, 2)},
           {"recall_ms", least_and_median(recall)},
           {"morph_ms", rounded(cost * 1e3, 2)},

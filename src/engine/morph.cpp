@@ -13,8 +13,9 @@ namespace limber {
 
 namespace {
 
-// steps whose things are fetched while others go on: after a tick of physics they are far off
-constexpr std::size_t kAhead = 48;
+// Things are fetched while others go on: after a tick of physics they are far off. Of so many behind the present one
+// each time a little more, for what is found tells where the next is.
+constexpr std::size_t kAhead = 5;
 
 constexpr std::array<std::string_view, 4> kEasings = {"linear", "smooth", "in", "out"};
 
@@ -60,32 +61,40 @@ Morph::Morph(const Store& store, const PresetBinding& binding, Blend to, double 
     const bool moves = !same_bits(values, now, row.width);
     group_moves = group_moves || (moves && row.written != nullptr && store.table(thing.id).name() == "group");
     if (!moves && !(group_moves && is_member(store, thing.id))) return;
-    steps_.push_back({thing.id, &row, thing.number, static_cast<std::uint32_t>(values_.size()), false});
+    const Step step{&row, static_cast<std::uint32_t>(values_.size())};
     values_.insert(values_.end(), now, now + row.width);
     values_.insert(values_.end(), values, values + row.width);
-    if (take(store, steps_.back())) return;
-    values_.resize(steps_.back().at);
-    steps_.pop_back();
+    if (!take(store, thing.id, step)) return values_.resize(step.at);
+    const auto at = static_cast<std::uint32_t>(steps_.size());
+    if (movers_.empty() || movers_.back().id != thing.id) movers_.push_back({thing.id, thing.number, at, at});
+    steps_.push_back(step);
+    movers_.back().end++;
   });
   left_ = steps_.size();
   index(store);
 }
 
 void Morph::index(const Store& store) {
-  first_.assign(store.view()->slot_count, static_cast<std::uint32_t>(steps_.size()));
-  for (std::size_t i = steps_.size(); i-- > 0;) {
-    if (!steps_[i].id.null()) first_[steps_[i].id.slot] = static_cast<std::uint32_t>(i);
+  mover_of_.assign(store.view()->slot_count, static_cast<std::uint32_t>(movers_.size()));
+  for (std::size_t i = 0; i < movers_.size(); i++) {
+    if (!movers_[i].id.null()) mover_of_[movers_[i].id.slot] = static_cast<std::uint32_t>(i);
   }
 }
 
 void Morph::announce(Store& store) const {
-  for (const Step& step : steps_) store.announce(step.id, *step.row, true);
+  for (const Mover& mover : movers_) {
+    for (std::uint32_t i = mover.begin; i < mover.end; i++) {
+      if (!steps_[i].gone) store.announce(mover.id, *steps_[i].row, true);
+    }
+  }
 }
 
 void Morph::release(NodeId id, const Row& row) {
-  if (id.slot >= first_.size()) return;
-  for (std::size_t i = first_[id.slot]; i < steps_.size() && steps_[i].id == id; i++) {
-    if (steps_[i].row != &row || steps_[i].over) continue;
+  if (id.slot >= mover_of_.size() || mover_of_[id.slot] >= movers_.size()) return;
+  const Mover& mover = movers_[mover_of_[id.slot]];
+  if (mover.id != id) return;
+  for (std::uint32_t i = mover.begin; i < mover.end; i++) {
+    if (steps_[i].row != &row || steps_[i].gone || steps_[i].over) continue;
     steps_[i].over = true;
     left_--;
   }
@@ -98,36 +107,45 @@ bool Morph::advance(Store& store, double time) {
   if (structure_ != store.structure_version()) find_again(store);
   const double now = part(time);
   const double amount = now >= 1 ? 1 : eased(easing_, now);
-  for (std::size_t i = 0; i < steps_.size();) {
-    const NodeId id = steps_[i].id;
+  for (std::size_t i = 0; i < movers_.size(); i++) {
+    fetch_ahead(store, i);
+    const Mover& mover = movers_[i];
     std::uint64_t rows = 0;
-    if (const std::size_t ahead = i + kAhead; ahead < steps_.size() && !steps_[ahead].id.null())
-      store.fetch(steps_[ahead].id);
-    for (; i < steps_.size() && steps_[i].id == id; i++) {
-      if (!id.null() && !steps_[i].over) rows |= go_on(store, steps_[i], amount);
+    for (std::uint32_t k = mover.begin; k < mover.end; k++) {
+      if (!steps_[k].gone && !steps_[k].over) rows |= go_on(store, mover.id, steps_[k], amount);
     }
-    if (rows != 0) store.run_effects(id, rows);
+    if (rows != 0) store.run_effects(mover.id, rows);
   }
   return now < 1 && left_ > 0;
 }
 
+void Morph::fetch_ahead(const Store& store, std::size_t at) const {
+  const auto there = [&](std::size_t mover) { return mover < movers_.size() && !movers_[mover].id.null(); };
+  if (const std::size_t far = at + 3 * kAhead; there(far)) {
+    store.fetch_node(movers_[far].id);
+    store.fetch_numbers(movers_[far].id);
+  }
+  if (const std::size_t nearer = at + 2 * kAhead; there(nearer)) store.fetch_thing(movers_[nearer].id);
+  if (const std::size_t near = at + kAhead; there(near)) store.fetch_effects(movers_[near].id);
+}
+
 // the row that was written, as a bit
-std::uint64_t Morph::go_on(Store& store, const Step& step, double amount) const {
+std::uint64_t Morph::go_on(Store& store, NodeId id, const Step& step, double amount) const {
   const Row& row = *step.row;
   const double* const from = values_.data() + step.at;
   std::array<double, 4> out{};
   mix(row, from, from + row.width, amount, out.data());
-  if (same_bits(out.data(), std::as_const(store).values(step.id, row), row.width)) return 0;
-  store.go_on(step.id, row, out.data());
+  if (same_bits(out.data(), std::as_const(store).values(id, row), row.width)) return 0;
+  store.go_on(id, row, out.data());
   return std::uint64_t{1} << row.index;
 }
 
 // Both ends as the row takes them, so that it takes all that lies between; false: it does not take them.
-bool Morph::take(const Store& store, const Step& step) {
+bool Morph::take(const Store& store, NodeId id, const Step& step) {
   const Row& row = *step.row;
   for (double* const end : {&values_[step.at], &values_[step.at + row.width]}) {
     std::array<double, 4> taken{};
-    if (!store.take(step.id, row, {end, row.width}, taken.data())) return false;
+    if (!store.take(id, row, {end, row.width}, taken.data())) return false;
     std::copy_n(taken.data(), row.width, end);
   }
   return true;
@@ -136,27 +154,29 @@ bool Morph::take(const Store& store, const Step& step) {
 // things came or went: what stands under the same name goes on from where the morph is
 void Morph::find_again(const Store& store) {
   structure_ = store.structure_version();
-  const bool all_there = std::all_of(steps_.begin(), steps_.end(), [&](const Step& s) { return store.alive(s.id); });
+  const bool all_there = std::all_of(movers_.begin(), movers_.end(), [&](const Mover& m) { return store.alive(m.id); });
   if (all_there) return;
   const auto binding = PresetBinding::make(store, to_.a->shape, except_, false);
   if (!binding) return;  // its patterns were right when it began
   std::vector<const PresetBinding::Thing*> things(to_.a->shape->things().size());
   for (const PresetBinding::Thing& thing : (*binding)->things()) things[thing.number] = &thing;
-  for (Step& step : steps_) {
-    const PresetBinding::Thing* const thing = things[step.thing];
-    step.id = {};
-    if (thing == nullptr) continue;
-    for (const PresetBinding::FitRow& fit : (*binding)->fit(*thing).rows) {
-      const bool same =
-          fit.row->name == step.row->name && fit.row->type == step.row->type && fit.row->choices == step.row->choices;
-      if (!same) continue;
-      step.id = thing->id;
-      step.row = fit.row;
-      if (!take(store, step)) step.id = {};
-      break;
-    }
+  for (Mover& mover : movers_) {
+    const PresetBinding::Thing* const thing = things[mover.thing];
+    mover.id = thing == nullptr ? NodeId{} : thing->id;
+    for (std::uint32_t i = mover.begin; i < mover.end; i++)
+      steps_[i].gone = thing == nullptr || !find_again(store, (*binding)->fit(*thing), mover.id, steps_[i]);
   }
   index(store);
+}
+
+// whether it has a row of that name and kind
+bool Morph::find_again(const Store& store, const PresetBinding::Fit& fit, NodeId id, Step& step) {
+  const auto same = std::find_if(fit.rows.begin(), fit.rows.end(), [&](const PresetBinding::FitRow& row) {
+    return row.row->name == step.row->name && row.row->type == step.row->type && row.row->choices == step.row->choices;
+  });
+  if (same == fit.rows.end()) return false;
+  step.row = same->row;
+  return take(store, id, step);
 }
 
 void Morphs::advance(Store& store, double time) {

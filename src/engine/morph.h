@@ -41,16 +41,23 @@ class Morph {
 
  private:
   struct Step {
-    NodeId id;  // null: its thing is gone
     const Row* row = nullptr;
-    std::uint32_t thing = 0;  // number in the preset's shape
-    std::uint32_t at = 0;     // where it begins and, behind that, where it ends
+    std::uint32_t at = 0;  // where it begins and, behind that, where it ends
+    bool gone = false;     // its thing has no such row now
     bool over = false;
   };
+  struct Mover {
+    NodeId id;                // null: it is gone
+    std::uint32_t thing = 0;  // number in the preset's shape
+    std::uint32_t begin = 0;  // of its steps
+    std::uint32_t end = 0;
+  };
   void index(const Store& store);
-  std::uint64_t go_on(Store& store, const Step& step, double amount) const;
+  void fetch_ahead(const Store& store, std::size_t at) const;
+  std::uint64_t go_on(Store& store, NodeId id, const Step& step, double amount) const;
   void find_again(const Store& store);
-  bool take(const Store& store, const Step& step);
+  bool find_again(const Store& store, const PresetBinding::Fit& fit, NodeId id, Step& step);
+  bool take(const Store& store, NodeId id, const Step& step);
 
   Blend to_;
   std::vector<std::string> except_;
@@ -58,9 +65,10 @@ class Morph {
   double seconds_ = 0;
   Easing easing_ = Easing::smooth;
   std::uint64_t structure_ = 0;
+  std::vector<Mover> movers_;
   std::vector<Step> steps_;
   std::vector<double> values_;
-  std::vector<std::uint32_t> first_;  // step by slot; its size: none
+  std::vector<std::uint32_t> mover_of_;  // by slot; their number: none
   std::size_t left_ = 0;
 };
 

@@ -44,6 +44,12 @@ bool PresetShape::operator==(const PresetShape& other) const {
                                               });
 }
 
+void PresetShape::expect(std::size_t things) {
+  constexpr std::size_t kName = 8;  // most are shorter
+  things_.reserve(things);
+  names_.reserve(things * kName);
+}
+
 std::uint32_t PresetShape::add(std::uint32_t parent, std::string_view name) {
   things_.push_back(
       {parent, kNoRows, 0, static_cast<std::uint32_t>(names_.size()), static_cast<std::uint32_t>(name.size())});

@@ -70,6 +70,8 @@ class PresetShape {
   bool operator==(const PresetShape& other) const;
 
   // for those who make one
+  /// There will be so many things.
+  void expect(std::size_t things);
   std::uint32_t add(std::uint32_t parent, std::string_view name);
   /// Gives the thing rows; their numbers stand behind all that were given so far.
   void give(std::uint32_t thing, std::uint32_t rows);

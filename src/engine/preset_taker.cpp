@@ -19,6 +19,9 @@ namespace limber {
 namespace {
 
 constexpr std::size_t kMostPlans = 8;
+constexpr std::size_t kRoomWorth = std::size_t{1} << 17u;  // numbers: for fewer no room is made ahead
+constexpr std::size_t kRoomSlice = std::size_t{1} << 16u;  // of it at a time
+constexpr std::size_t kAhead = 3;  // things that are fetched while others are looked at: they may lie far off
 
 // many megabytes that are touched for the first time would be a fault every 4 KB; without large pages it goes as well
 void ask_for_large_pages(const std::vector<double>& room) {
@@ -50,6 +53,10 @@ class PresetTaker::Planning {
   Result<void> begin() {
     Result<void> chosen = choose();
     things_.assign(store_.view()->slot_count, 0);
+    if (leads_.empty()) {
+      shape_->expect(things_.size());
+      plan_.slots.reserve(things_.size());
+    }
     plan_.slots.push_back(store_.root().slot);
     way_.push_back(store_.root());
     if (before_ != nullptr) begin_with(*before_);
@@ -61,13 +68,18 @@ class PresetTaker::Planning {
       if (count-- == 0) return false;
       const NodeId id = way_.back();
       way_.pop_back();
+      if (way_.size() >= kAhead) store_.fetch_thing(way_[way_.size() - kAhead]);
       if (before_ != nullptr && id != store_.root() && store_.changed(id) <= before_->structure) {
         keep(id);
         continue;
       }
       add(id);
       const std::span<const NodeId> children = store_.children(id);
-      way_.insert(way_.end(), children.rbegin(), children.rend());
+      for (auto child = children.rbegin(); child != children.rend(); ++child) {
+        if (!leads_.empty() && !leads_[child->slot]) continue;
+        store_.fetch_node(*child);
+        way_.push_back(*child);
+      }
     }
     return true;
   }
@@ -88,24 +100,31 @@ class PresetTaker::Planning {
  private:
   // rows by slot, of those that the patterns reach
   Result<void> choose() {
-    for (const std::string& pattern : plan_.choice.rows) {
+    const PresetChoice& choice = plan_.choice;
+    if (choice.rows.empty()) return {};
+    chosen_.assign(store_.view()->slot_count, 0);
+    leads_.assign(chosen_.size(), false);
+    for (const std::string& pattern : choice.rows) {
       PatternBudget budget;
-      const Result<std::vector<Place>> places = match_places(store_, pattern, budget);
-      if (!places) return Error{places.error()};
-      for (const Place& place : *places) {
+      const Result<std::vector<PlaceRows>> things = match_things(store_, pattern, budget);
+      if (!things) return Error{things.error()};
+      for (const auto& [node, rows] : *things) {
         // a thing stands for all that it has, and for what is in it
-        if (place.row == nullptr)
-          store_.walk(place.node, [&](NodeId id) { choose(id, ~std::uint64_t{0}); });
+        if (rows == 0)
+          store_.walk(node, [&](NodeId id) { choose(id, ~std::uint64_t{0}); });
         else
-          choose(place.node, std::uint64_t{1} << place.row->index);
+          choose(node, rows);
       }
     }
+    // where parts are is asked for by its own word: of the parts that the patterns reach, else of all
+    if (!part_chosen_ && (choice.poses || choice.velocities)) leads_.clear();
     return {};
   }
 
   void choose(NodeId id, std::uint64_t rows) {
+    part_chosen_ = part_chosen_ || &store_.table(id) == &Part::table();
     chosen_[id.slot] |= rows;
-    part_chosen_ |= &store_.table(id) == &Part::table();
+    for (NodeId at = id; !at.null() && !leads_[at.slot]; at = store_.parent(at)) leads_[at.slot] = true;
   }
 
   // what a class may give: properties, and of parts the states that are asked for
@@ -139,12 +158,10 @@ class PresetTaker::Planning {
     const Table& table = store_.table(id);
     const Kind& kind = kind_of(table);
     std::uint64_t rows = kind.rows;
-    if (rows != 0 && !plan_.choice.rows.empty()) {
-      const auto chosen = chosen_.find(id.slot);
-      // where parts are is asked for by its own word: of the parts that the patterns reach, else of all
-      const bool with_states = chosen != chosen_.end() || !part_chosen_;
-      const std::uint64_t states = with_states ? rows & ~kind.properties : 0;
-      rows = (chosen == chosen_.end() ? 0 : rows & chosen->second) | states;
+    if (!chosen_.empty()) {
+      const std::uint64_t chosen = chosen_[id.slot];
+      const bool with_states = chosen != 0 || !part_chosen_;
+      rows = (rows & chosen) | (with_states ? rows & ~kind.properties : 0);
     }
     for (const Row* row : kind.picky) {
       const std::uint64_t bit = std::uint64_t{1} << row->index;
@@ -237,7 +254,8 @@ class PresetTaker::Planning {
   std::vector<std::uint32_t> before_things_;  // by slot
   Plan plan_;
   std::shared_ptr<PresetShape> shape_ = std::make_shared<PresetShape>();
-  std::unordered_map<std::uint32_t, std::uint64_t> chosen_;  // by slot, what the patterns reach
+  std::vector<std::uint64_t> chosen_;  // by slot, what the patterns reach; empty: there are none
+  std::vector<bool> leads_;            // by slot, whether something at or below it may be chosen; empty: all do
   bool part_chosen_ = false;
   std::unordered_map<const Table*, Kind> kinds_;
   // neighbours are alike
@@ -283,8 +301,21 @@ const PresetTaker::Plan& PresetTaker::keep(Plan plan) {
   return plans_.emplace_back(std::move(plan));
 }
 
+// what is touched for the first time is a fault in every page, which take longer than the copy
+void PresetTaker::make_room(const Store& store) {
+  const std::size_t numbers = store.kept().size();
+  if (numbers < kRoomWorth || room_.size() >= numbers) return;
+  if (room_.capacity() < numbers) {
+    room_ = {};
+    room_.reserve(numbers + numbers / 8);
+    ask_for_large_pages(room_);
+  }
+  room_.resize(std::min(numbers, room_.size() + kRoomSlice));
+}
+
 void PresetTaker::prepare(const Store& store) {
   follow(store);
+  make_room(store);
   if (quiet_ <= kQuiet) quiet_++;
   if (quiet_ <= kQuiet || known({}) != nullptr) return;
   if (ahead_ == nullptr) {
@@ -312,11 +343,16 @@ Result<std::shared_ptr<const Preset>> PresetTaker::take(const Store& store, std:
                                                         const PresetChoice& choice) {
   const Result<const Plan*> plan = plan_for(store, choice);
   if (!plan) return Error{plan.error()};
-  return copy(store, **plan, std::move(name));
+  // what is much smaller is not worth all of the room
+  std::vector<double> room;
+  if ((*plan)->shape->width() > room_.size() / 2) room.swap(room_);
+  return copy(store, **plan, std::move(name), std::move(room));
 }
 
-std::shared_ptr<const Preset> PresetTaker::copy(const Store& store, const Plan& plan, std::string name) {
-  auto preset = std::make_shared<Preset>(Preset{std::move(name), plan.choice, plan.shape, {}});
+std::shared_ptr<const Preset> PresetTaker::copy(const Store& store, const Plan& plan, std::string name,
+                                                std::vector<double> room) {
+  room.clear();
+  auto preset = std::make_shared<Preset>(Preset{std::move(name), plan.choice, plan.shape, std::move(room)});
   preset->values.reserve(plan.shape->width());
   ask_for_large_pages(preset->values);
   for (const Piece& piece : plan.pieces) {
@@ -328,7 +364,7 @@ std::shared_ptr<const Preset> PresetTaker::copy(const Store& store, const Plan& 
 
 std::shared_ptr<const Preset> PresetTaker::take_script(const Store& store) {
   Result<Plan> plan = Planning::make(store, {}, nullptr);  // without patterns nothing can be wrong
-  auto preset = std::make_shared<Preset>(*copy(store, *plan, "script"));
+  auto preset = std::make_shared<Preset>(*copy(store, *plan, "script", {}));
   const Result<Place> scene = find_place(store, "/scene", false);
   if (!scene || scene->row != nullptr) return preset;
   const Table& table = store.table(scene->node);

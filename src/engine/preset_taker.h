@@ -67,8 +67,11 @@ class PresetTaker {
   };
   class Planning;
 
-  static std::shared_ptr<const Preset> copy(const Store& store, const Plan& plan, std::string name);
+  /// `room`: its memory holds the numbers, if there is enough.
+  static std::shared_ptr<const Preset> copy(const Store& store, const Plan& plan, std::string name,
+                                            std::vector<double> room);
 
+  void make_room(const Store& store);
   void follow(const Store& store);
   const Plan* known(const PresetChoice& choice) const;
   const Plan& keep(Plan plan);
@@ -80,6 +83,7 @@ class PresetTaker {
   std::unique_ptr<Planning> ahead_;  // of every property, on its way
   std::uint64_t structure_ = 0;      // the plans'
   int quiet_ = 0;
+  std::vector<double> room_;  // for the numbers of the next one
 };
 
 }  // namespace limber

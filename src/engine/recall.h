@@ -2,8 +2,9 @@
 #pragma once
 
 #include <array>
+#include <bit>
 #include <cstddef>
-#include <cstring>
+#include <cstdint>
 #include <string>
 
 #include "engine/preset.h"
@@ -30,8 +31,12 @@ void each_value(const PresetBinding& binding, const Blend& blend, F&& f) {
   }
 }
 
+// of so few numbers that a call would cost more
 inline bool same_bits(const double* a, const double* b, std::size_t count) {
-  return std::memcmp(a, b, count * sizeof *a) == 0;
+  for (std::size_t i = 0; i < count; i++) {
+    if (std::bit_cast<std::uint64_t>(a[i]) != std::bit_cast<std::uint64_t>(b[i])) return false;
+  }
+  return true;
 }
 
 /// What was not taken as it is.

@@ -1,6 +1,7 @@
 // Addresses to places of the store.
 #include "params/catalog.h"
 
+#include <algorithm>
 #include <optional>
 
 #include "params/path_walk.h"
@@ -11,6 +12,7 @@ namespace {
 
 struct StoreShape {
   using Place = limber::Place;
+  using PlaceRows = limber::PlaceRows;
   const Store& store;
 
   NodeId root() const { return store.root(); }
@@ -25,8 +27,12 @@ struct StoreShape {
   }
   template <class F>
   void each_child(NodeId parent, F&& f) const {
-    for (const NodeId child : store.children(parent)) {
-      if (!f(child)) return;
+    constexpr std::size_t kAhead = 4;  // their names may lie far off
+    const std::span<const NodeId> children = store.children(parent);
+    for (const NodeId child : children.first(std::min(kAhead, children.size()))) store.fetch_node(child);
+    for (std::size_t i = 0; i < children.size(); i++) {
+      if (i + kAhead < children.size()) store.fetch_node(children[i + kAhead]);
+      if (!f(children[i])) return;
     }
   }
 };
@@ -41,6 +47,11 @@ Result<std::vector<Place>> match_places(const Store& store, std::string_view pat
                                         std::size_t limit) {
   const StoreShape shape{store};
   return PathWalk(shape, budget).match(pattern, limit);
+}
+
+Result<std::vector<PlaceRows>> match_things(const Store& store, std::string_view pattern, PatternBudget& budget) {
+  const StoreShape shape{store};
+  return PathWalk(shape, budget).match_things(pattern, SIZE_MAX);
 }
 
 }  // namespace limber

@@ -16,6 +16,12 @@ struct Place {
   const Row* row = nullptr;
 };
 
+/// Rows of a node, a bit a row; none: the node itself.
+struct PlaceRows {
+  NodeId node;
+  std::uint64_t rows = 0;
+};
+
 /// The place of an exact path such as "/physics/body/arm/part/tip/mass". Classes' and rows' names are compared by the
 /// one naming rule, names of things exactly (%20 style undone). The error names the part that fails and, if `hint` says
 /// so, near names, which are looked for among all that there are.
@@ -25,5 +31,7 @@ Result<Place> find_place(const Store& store, std::string_view path, bool hint = 
 /// At most `limit` places. Errors: it is no pattern, or more work than the budget allows.
 Result<std::vector<Place>> match_places(const Store& store, std::string_view pattern, PatternBudget& budget,
                                         std::size_t limit = 1000000);
+/// The same thing by thing, where each has many.
+Result<std::vector<PlaceRows>> match_things(const Store& store, std::string_view pattern, PatternBudget& budget);
 
 }  // namespace limber

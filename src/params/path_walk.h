@@ -2,11 +2,13 @@
 #pragma once
 
 #include <algorithm>
+#include <bit>
 #include <cstdint>
 #include <optional>
 #include <string>
 #include <string_view>
 #include <unordered_map>
+#include <utility>
 #include <vector>
 
 #include <fmt/format.h>
@@ -18,13 +20,14 @@
 
 namespace limber {
 
-/// A Shape has a `Place` {node, row} and of its nodes: root(), name, table, path, key (a number of its own, below
-/// keys()), exact_child (the child of exactly that name, or nothing), and each_child, whose function says whether to go
-/// on.
+/// A Shape has a `Place` {node, row}, a `PlaceRows` {node, rows as bits} and of its nodes: root(), name, table, path,
+/// key (a number of its own, below keys()), exact_child (the child of exactly that name, or nothing), and each_child,
+/// whose function says whether to go on.
 template <class Shape>
 class PathWalk {
  public:
   using Place = typename Shape::Place;
+  using PlaceRows = typename Shape::PlaceRows;
   using Id = decltype(Place::node);
 
   PathWalk(const Shape& shape, PatternBudget& budget) : shape_(shape), budget_(budget) {}
@@ -51,12 +54,28 @@ class PathWalk {
   }
 
   Result<std::vector<Place>> match(std::string_view pattern, std::size_t limit) {
+    const Result<std::vector<PlaceRows>> things = match_things(pattern, limit);
+    if (!things) return Error{things.error()};
+    std::vector<Place> places;
+    places.reserve(std::min(count_, limit));
+    for (const PlaceRows& thing : *things) {
+      if (thing.rows == 0) places.push_back({thing.node, nullptr});
+      const Table& table = shape_.table(thing.node);
+      for (std::uint64_t rows = thing.rows; rows != 0 && places.size() < limit; rows &= rows - 1)
+        places.push_back({thing.node, &table.row(static_cast<std::uint32_t>(std::countr_zero(rows)))});
+    }
+    return places;
+  }
+
+  /// The same thing by thing; the rows of the last may go beyond the limit.
+  Result<std::vector<PlaceRows>> match_things(std::string_view pattern, std::size_t limit) {
     if (pattern.empty() || pattern.front() != '/')
       return Error{fmt::format("'{}' is no address: it must begin with /", printable(pattern))};
     if (pattern.find_first_of("?*[{") == std::string_view::npos && pattern.find("//") == std::string_view::npos) {
       const Result<Place> place = find(shape_, pattern);
       if (!place) return Error{place.error()};
-      return std::vector<Place>{*place};
+      count_ = 1;
+      return std::vector<PlaceRows>{{place->node, place->row == nullptr ? 0 : std::uint64_t{1} << place->row->index}};
     }
     pieces_ = split(pattern.substr(1), '/');
     limit_ = limit;
@@ -100,7 +119,7 @@ class PathWalk {
     return name_hint(name, near);
   }
 
-  bool over() const { return found_.size() >= limit_ || budget_.over(); }
+  bool over() const { return count_ >= limit_ || budget_.over(); }
 
   bool name_matches(Id id, std::string_view piece) {
     const std::string_view name = shape_.name(id);
@@ -110,26 +129,29 @@ class PathWalk {
   }
 
   // the rows of a class that the last piece means: found once, for all of its things
-  const std::vector<const Row*>& rows_of(const Table& table) {
-    const auto [known, fresh] = rows_.try_emplace(&table);
-    if (!fresh) return known->second;
-    const std::string_view piece = pieces_.back();
-    if (!is_pattern(piece)) {
-      if (const Row* const row = table.find(piece)) known->second.push_back(row);
-      return known->second;
+  std::uint64_t rows_of(const Table& table) {
+    if (last_.first == &table) return last_.second;
+    const auto [known, fresh] = rows_.try_emplace(&table, 0);
+    if (fresh) {
+      const std::string_view piece = pieces_.back();
+      const bool pattern = is_pattern(piece);
+      const Row* const exact = pattern ? nullptr : table.find(piece);
+      const std::string plain = plain_name(piece);
+      for (const Row& row : table.rows()) {
+        const bool meant =
+            pattern ? budget_.match(piece, row.name) || budget_.match(plain, plain_name(row.name)) : &row == exact;
+        if (meant) known->second |= std::uint64_t{1} << row.index;
+      }
     }
-    const std::string plain = plain_name(piece);
-    for (const Row& row : table.rows()) {
-      if (budget_.match(piece, row.name) || budget_.match(plain, plain_name(row.name))) known->second.push_back(&row);
-    }
+    last_ = *known;
     return known->second;
   }
 
   void rows(Id id) {
-    for (const Row* const row : rows_of(shape_.table(id))) {
-      if (over()) return;
-      found_.push_back({id, row});
-    }
+    const std::uint64_t rows = rows_of(shape_.table(id));
+    if (rows == 0 || over()) return;
+    found_.push_back({id, rows});
+    count_ += static_cast<std::size_t>(std::popcount(rows));
   }
 
   void walk(Id id, std::size_t at) {
@@ -162,9 +184,11 @@ class PathWalk {
   PatternBudget& budget_;
   std::vector<std::string_view> pieces_;
   std::size_t limit_ = 0;
-  std::vector<Place> found_;
-  std::unordered_map<const Table*, std::vector<const Row*>> rows_;
-  std::vector<bool> been_;  // by piece and key
+  std::vector<PlaceRows> found_;
+  std::size_t count_ = 0;  // of rows
+  std::unordered_map<const Table*, std::uint64_t> rows_;
+  std::pair<const Table*, std::uint64_t> last_{};  // neighbours are alike
+  std::vector<bool> been_;                         // by piece and key
 };
 
 }  // namespace limber

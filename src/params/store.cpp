@@ -31,7 +31,7 @@ void make_room(std::vector<T>& v, std::size_t more) {
 
 Store::Store() {
   slots_.push_back({1, table_number(group_table()), 0, 0});
-  nodes_.push_back({&group_table(), "", nullptr, {}, {}, 0, 0, 0, 0});
+  nodes_.push_back({&group_table(), nullptr, "", {}, {}, 0, 0, 0, 0});
   root_ = {0, 1};
   refresh_view();
 }
@@ -100,7 +100,7 @@ NodeId Store::add(const Table& table, NodeId parent, std::string name, void* thi
   s.kept = take_block(kept_, spare_kept_, table.kept_width());
   s.live = take_block(live_, spare_live_, table.live_width());
   const NodeId id{slot, s.generation};
-  nodes_[slot] = {&table, std::move(name), thing, parent, {}, 0, 0, structure_version_ + 1, 0};
+  nodes_[slot] = {&table, thing, std::move(name), parent, {}, 0, 0, structure_version_ + 1, 0};
   nodes_[parent.slot].children.push_back(id);
   child_of_.insert(slot);
   for (const Row& row : table.rows()) {
@@ -120,7 +120,7 @@ NodeId Store::add_group(NodeId parent, std::string name) {
 bool Store::is_group(NodeId id) const { return alive(id) && nodes_[id.slot].table == &group_table(); }
 
 const Store::Node& Store::nobody() {
-  static const Node none{&group_table(), "", nullptr, {}, {}, 0, 0, 0, 0};
+  static const Node none{&group_table(), nullptr, "", {}, {}, 0, 0, 0, 0};
   return none;
 }
 

@@ -40,8 +40,9 @@ std::string range_text(const Row& row) {
   return fmt::format("{} .. {}", fmt::join(row.axis_min, " "), fmt::join(row.axis_max, " "));
 }
 
-Table::Table(std::string name, std::string path, std::string seed, std::vector<Row> rows)
-    : name_(std::move(name)), path_(std::move(path)), seed_(std::move(seed)), rows_(std::move(rows)) {
+Table::Table(std::string name, std::string path, std::string seed, std::vector<Row> rows,
+             void (*fetch)(const void* thing))
+    : name_(std::move(name)), path_(std::move(path)), seed_(std::move(seed)), rows_(std::move(rows)), fetch_(fetch) {
   LIMBER_CHECK(rows_.size() <= 64);
   for (std::uint32_t i = 0; i < rows_.size(); i++) {
     Row& row = rows_[i];

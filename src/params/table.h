@@ -91,7 +91,9 @@ const Table& shared_table(std::string name, std::string path, std::vector<Row> r
 class Table {
  public:
   /// `path`: where its nodes stand, with <name> for the user's names; `seed`: the seed's address prefix, or empty.
-  Table(std::string name, std::string path, std::string seed, std::vector<Row> rows);
+  /// `fetch`: has the processor fetch what the effects of a thing will look at, for who goes through many.
+  Table(std::string name, std::string path, std::string seed, std::vector<Row> rows,
+        void (*fetch)(const void* thing) = nullptr);
 
   const std::string& name() const { return name_; }
   const std::string& path() const { return path_; }
@@ -100,6 +102,9 @@ class Table {
   const Row& row(std::uint32_t index) const { return rows_[index]; }
   std::uint32_t kept_width() const { return kept_width_; }
   std::uint32_t live_width() const { return live_width_; }
+  void fetch(const void* thing) const {
+    if (fetch_ != nullptr) fetch_(thing);
+  }
 
   /// The row of that name, compared by the one naming rule; null when there is none.
   const Row* find(std::string_view name) const;
@@ -115,6 +120,7 @@ class Table {
   std::vector<std::string> plain_;
   std::uint32_t kept_width_ = 0;
   std::uint32_t live_width_ = 0;
+  void (*fetch_)(const void* thing) = nullptr;
 };
 
 namespace rows {

@@ -13,6 +13,10 @@ namespace {
 
 struct TreeShape {
   using Place = TreePlace;
+  struct PlaceRows {
+    std::uint32_t node = 0;
+    std::uint64_t rows = 0;
+  };
   const Tree& tree;
 
   std::uint32_t root() const { return 0; }

@@ -90,6 +90,7 @@ class Part {
   void effect_velocity();
 
  private:
+  static void fetch(const void* thing);
   void effect_mass();
   void effect_damping();
   void effect_surface();
@@ -110,10 +111,10 @@ class Part {
   std::uint32_t load_;  // its place among the world's loads
   std::shared_ptr<const Geometry> geometry_;
   std::unique_ptr<btRigidBody> rigid_;
-  Pose start_;
-  std::uint64_t kept_in_ = 0;  // the guarded call whose undo knows its forces
   bool is_static_ = false;
   bool reports_ = false;
+  Pose start_;
+  std::uint64_t kept_in_ = 0;  // the guarded call whose undo knows its forces
 };
 
 }  // namespace limber
