@@ -76,7 +76,7 @@ std::string Tree::path(std::uint32_t node) const {
 }
 
 std::string Tree::path(const TreePlace& place) const {
-  const std::string thing = path(place.node);
+  std::string thing = path(place.node);
   if (place.row == nullptr) return thing;
   return place.node == 0 ? thing + place.row->name : thing + "/" + place.row->name;
 }
