@@ -38,7 +38,7 @@ double surroundings(const PhaseTimes& t) {
 }
 
 // one side's samples
-struct Side {
+struct ArmSide {
   Samples ticks;  // real time
   Samples work;   // the processor's
   double gap = 0;
@@ -204,7 +204,7 @@ double BenchArms::servo_error(double time) const {
 
 nlohmann::ordered_json bench_arms(const ArmScene& scene, int warm_ticks, int ticks, bool compare_raw) {
   const double moving = scene.arms * (scene.parts + 1);
-  Side warm, ours, bare;
+  ArmSide warm, ours, bare;
   BenchArms arms(scene);
   double time = arms.time();
   warm.play(arms, time, scene, warm_ticks);

@@ -12,6 +12,7 @@ struct NodeId {
   std::uint32_t generation = 0;
 
   bool null() const { return slot == 0xffffffffu; }
+  // NOLINTNEXTLINE(modernize-use-nullptr): seen in the comparison that the compiler writes
   auto operator<=>(const NodeId&) const = default;
 };
 

@@ -21,7 +21,7 @@ namespace {
 constexpr std::size_t kMostPlans = 8;
 constexpr std::size_t kRoomWorth = std::size_t{1} << 17u;  // numbers: for fewer no room is made ahead
 constexpr std::size_t kRoomSlice = std::size_t{1} << 16u;  // of it at a time
-constexpr std::size_t kAhead = 3;  // things that are fetched while others are looked at: they may lie far off
+constexpr std::size_t kThingsAhead = 3;  // things that are fetched while others are looked at: they may lie far off
 
 // many megabytes that are touched for the first time would be a fault every 4 KB; without large pages it goes as well
 void ask_for_large_pages(const std::vector<double>& room) {
@@ -68,7 +68,7 @@ class PresetTaker::Planning {
       if (count-- == 0) return false;
       const NodeId id = way_.back();
       way_.pop_back();
-      if (way_.size() >= kAhead) store_.fetch_thing(way_[way_.size() - kAhead]);
+      if (way_.size() >= kThingsAhead) store_.fetch_thing(way_[way_.size() - kThingsAhead]);
       if (before_ != nullptr && id != store_.root() && store_.changed(id) <= before_->structure) {
         keep(id);
         continue;

@@ -41,7 +41,7 @@ struct Broadphase::Proxy : btBroadphaseProxy {
 // room for what is usual, so that nothing is allocated in a step
 struct Broadphase::Search {
   Search() {
-    found.reserve(8 * kPlaces);
+    found.reserve(std::size_t{8} * kPlaces);
     stack.reserve(256);
   }
   std::vector<std::pair<Proxy*, Proxy*>> found;

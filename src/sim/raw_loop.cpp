@@ -9,8 +9,9 @@ namespace limber {
 
 Vec3 ArmScene::center(int arm, int part) const {
   const int side = static_cast<int>(std::ceil(std::sqrt(arms)));
+  const int row = arm / side;
   const double along = size.z * (part + 1.5);
-  return {spacing * (arm % side), spacing * (arm / side), hanging ? size.z * (parts + 3) - along : along};
+  return {spacing * (arm % side), spacing * row, hanging ? size.z * (parts + 3) - along : along};
 }
 
 double ArmScene::target(int joint, double time) {

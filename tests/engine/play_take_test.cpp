@@ -33,7 +33,7 @@ std::string answer_to(Show& show, const std::string& text) {
   auto wish = std::make_shared<Evaluate>();
   std::string answer;
   wish->text = text;
-  wish->answer = [&](Evaluation said) { answer = said.text; };
+  wish->answer = [&](const Evaluation& said) { answer = said.text; };
   show.link.inbox.push({{}, {Hand::console}, std::move(wish)});
   show.engine.idle();
   return answer;

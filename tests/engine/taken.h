@@ -85,7 +85,7 @@ inline EngineOptions taken_options(const ShowFolder& folder) {
 inline void evaluate(Show& show, const std::string& text) {
   auto wish = std::make_shared<Evaluate>();
   wish->text = text;
-  wish->answer = [](Evaluation) {};
+  wish->answer = [](const Evaluation&) {};
   show.link.inbox.push({{}, {Hand::console}, std::move(wish)});
 }
 

@@ -47,7 +47,7 @@ struct ServerStage {
   }
   QueryDoors doors() {
     QueryDoors doors = fake_doors();
-    doors.take = [this](const Origin& origin, std::string packet) {
+    doors.take = [this](const Origin& origin, const std::string& packet) {
       const std::size_t space = packet.find(' ');
       link.inbox.push({{engine_test::message(packet.substr(0, space), std::atof(packet.c_str() + space))}, origin});
       link.wake_engine();
@@ -250,6 +250,7 @@ TEST(QueryServer, ASlowClientIsDroppedTheOthersAreServed) {
 TEST(QueryServer, AsManyAsThereAreSeats) {
   const ServerStage stage;
   std::vector<WebClient> idle;
+  idle.reserve(256);
   for (int i = 0; i < 256; i++) idle.emplace_back(stage.server.port());
   WebClient late = stage.client();
   EXPECT_EQ(late.reply().status, 503) << "turned away, with a word";

@@ -84,7 +84,9 @@ struct Cloud {
   }
   btTransform& floor_at() { return bodies[kBodies]->getWorldTransform(); }
   void join_or_part() {
-    const auto pair = std::minmax(any(), any());
+    const int some = any();
+    const int other = any();
+    const std::pair<int, int> pair(std::min(some, other), std::max(some, other));
     btRigidBody& a = *bodies[static_cast<std::size_t>(pair.first)];
     btRigidBody& b = *bodies[static_cast<std::size_t>(pair.second)];
     if (joints.size() > 20) {

@@ -137,7 +137,7 @@ double worst_difference(const Forest& f, const std::vector<double>& x) {
   double worst = 0;
   for (int i = 0; i < f.solver.size(); ++i) {
     const TreeNode& n = f.solver.node(i);
-    const double* row = &x[static_cast<std::size_t>(18 * i)];
+    const double* row = &x[18 * static_cast<std::size_t>(i)];
     const double v[6] = {n.change.linear.x,  n.change.linear.y,  n.change.linear.z,
                          n.change.angular.x, n.change.angular.y, n.change.angular.z};
     Spatial force{{row[12], row[13], row[14]}, {row[15], row[16], row[17]}};
@@ -175,6 +175,7 @@ TEST(TreeSolver, LoadsAloneAndMarkedPathsGiveTheSameAsTheWhole) {
     ASSERT_TRUE(s.factor(0, s.size()));
     s.solve(0, s.size());
     std::vector<Spatial> whole;
+    whole.reserve(static_cast<std::size_t>(s.size()));
     for (int i = 0; i < s.size(); ++i) whole.push_back(s.node(i).change);
     for (const bool marked : {false, true}) {
       const unsigned char* marks = marked ? path.data() : nullptr;
@@ -200,7 +201,7 @@ TEST(TreeSolver, HoldsALongChainOfUnequalMasses) {
       Vec3 e(0);
       e[k] = 1;
       n.axis[static_cast<std::size_t>(k)] = {e, Vec3(0)};
-      n.axis[static_cast<std::size_t>(3 + k)] = {glm::cross(Vec3(0, 0, -0.1), e), e};
+      n.axis[3 + static_cast<std::size_t>(k)] = {glm::cross(Vec3(0, 0, -0.1), e), e};
     }
     n.held = 63 & ~(1u << (3 + i % 2));
     n.load = {{0.3, 0, -mass}, Vec3(0)};

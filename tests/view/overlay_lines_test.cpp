@@ -68,7 +68,7 @@ TEST(OverlayLines, ALimitedTurnIsAFanAndAFreeOneARing) {
   EXPECT_EQ(lines.lines().size(), 1U + 32 + 1);
 }
 
-bool is_red(const Vec3& c) { return c.x > 120 && c.x > 2.5 * c.y && c.x > 2.5 * c.z; }
+bool is_red_line(const Vec3& c) { return c.x > 120 && c.x > 2.5 * c.y && c.x > 2.5 * c.z; }
 
 TEST(OverlayLines, AreSeenInThePictureWhileTheRowIsOn) {
   Stage stage;
@@ -89,7 +89,7 @@ TEST(OverlayLines, AreSeenInThePictureWhileTheRowIsOn) {
     // well outside of the ball, on the way of the arrow
     const Spot spot = spot_of(*now, part.center() + Vec3(0.6, 0, 0), 320, 180);
     int red = 0;
-    for (int y = spot.y - 3; y <= spot.y + 3; y++) red += is_red(color(picture, spot.x, y)) ? 1 : 0;
+    for (int y = spot.y - 3; y <= spot.y + 3; y++) red += is_red_line(color(picture, spot.x, y)) ? 1 : 0;
     return red;
   };
   for (const Quality quality : {Quality::low, Quality::high}) {

@@ -375,7 +375,8 @@ TEST(Renderer, ManyPartsOfEveryKind) {
     shapes.push_back(*stage.world.add_shape(fmt::format("s{}", shapes.size()), model));
   Body& body = **stage.world.add_body("many");
   for (int i = 0; i < 3000; i++) {
-    const Vec3 at(0.2 * (i % 60) - 6, 0.2 * (i / 60) - 5, 0.1);
+    const int row = i / 60;
+    const Vec3 at(0.2 * (i % 60) - 6, 0.2 * row - 5, 0.1);
     ASSERT_TRUE(
         body.add_part(fmt::format("p{}", i), *shapes[static_cast<std::size_t>(i) % 5], 0, {at, quat_identity()}).ok());
   }
