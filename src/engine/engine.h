@@ -44,7 +44,7 @@ struct EngineOptions {
   std::string recovery;                ///< The show's values are kept in that folder as long as it plays; empty: not.
   std::chrono::milliseconds recovery_every = RecoveryKeeper::kEvery;
   bool recover = false;       ///< `--recover`: what a run that did not end well has left is brought back.
-  int threads = 1;            ///< That solve islands side by side, 1 to Team::kMost, with the same result.
+  int threads = 1;            ///< That share out a step, 1 to Team::kMost, with the same result.
   std::vector<Message> sets;  ///< `--set`: the performer's hand before the first tick, after the preset.
 };
 

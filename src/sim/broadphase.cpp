@@ -212,7 +212,6 @@ void Broadphase::forget_parted(btDispatcher* dispatcher) {
 }
 
 void Broadphase::calculateOverlappingPairs(btDispatcher* dispatcher) {
-  BT_PROFILE("calculateOverlappingPairs");
   moving_.optimizeIncremental(1);
   if (marked_.size() == 0) return;
   forget_parted(dispatcher);

@@ -19,7 +19,7 @@ namespace limber {
 struct WorldSetup {
   double broadphase_margin = 0.01;  ///< Metres that bounding boxes are fattened by.
   int solver_iterations = 50;
-  std::shared_ptr<Team> team{};  ///< Solves islands side by side, with the same result; null: this thread alone.
+  std::shared_ptr<Team> team{};  ///< Shares out a step, with the same result; null: this thread alone.
 };
 
 /// Sequential impulses with joint rows of our own making: softness in physical units (a row is

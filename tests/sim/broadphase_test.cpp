@@ -183,6 +183,29 @@ TEST(Broadphase, ItsPairsAreThoseThatLookingAtEverythingFinds) {
   EXPECT_GT(forbidden, 100);
 }
 
+TEST(Broadphase, APlaneIsMetFromAsFarAsAContactCanBegin) {
+  Rig rig;
+  btStaticPlaneShape floor{btVector3(0, 0, 1), 0};
+  btRigidBody ground(0, nullptr, &floor);
+  btBoxShape shape(btVector3(1, 1, 1));
+  btRigidBody box(1, nullptr, &shape, btVector3(1, 1, 1));
+  const double reach = static_cast<double>(shape.getContactBreakingThreshold(0.02F));
+  ASSERT_GT(reach, 0.03);  // more than the margin
+  rig.world.addRigidBody(&ground);
+  rig.world.addRigidBody(&box);
+  const auto meets_at = [&](double gap) {
+    for (const double height : {50.0, 1 + gap}) {  // from far away, so that its box is new
+      box.getWorldTransform().setOrigin({0, 0, to_scalar(height)});
+      rig.world.performDiscreteCollisionDetection();
+    }
+    return rig.world.getPairCache()->findPair(box.getBroadphaseHandle(), ground.getBroadphaseHandle()) != nullptr;
+  };
+  EXPECT_TRUE(meets_at(kNear + 0.95 * reach));
+  EXPECT_FALSE(meets_at(kNear + reach + 1.1 * kFat));
+  rig.world.removeRigidBody(&box);
+  rig.world.removeRigidBody(&ground);
+}
+
 TEST(Broadphase, ABoxesQueryFindsWhatLiesInIt) {
   Cloud cloud(99);
   cloud.world.performDiscreteCollisionDetection();
