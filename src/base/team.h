@@ -61,14 +61,14 @@ void share_out(Team* team, int pieces, Work&& work) {
   }
 }
 
-/// Shares out the places from 0 to count - 1 in ranges of kPlaces: work(range, first, end) for each.
+/// Shares out the places from 0 to count - 1 in ranges of so many: work(range, first, end) for each.
 constexpr int kPlaces = 64;
-constexpr int ranges_of(int count) { return (count + kPlaces - 1) / kPlaces; }
+constexpr int ranges_of(int count, int places = kPlaces) { return (count + places - 1) / places; }
 template <class Work>
-void share_out_places(Team* team, int count, Work&& work) {
-  share_out(team, ranges_of(count), [&](int range, int) {
-    const int first = range * kPlaces;
-    work(range, first, std::min(first + kPlaces, count));
+void share_out_places(Team* team, int count, Work&& work, int places = kPlaces) {
+  share_out(team, ranges_of(count, places), [&](int range, int) {
+    const int first = range * places;
+    work(range, first, std::min(first + places, count));
   });
 }
 

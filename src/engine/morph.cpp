@@ -13,10 +13,6 @@ namespace limber {
 
 namespace {
 
-// Things are fetched while others go on: after a tick of physics they are far off. Of so many behind the present one
-// each time a little more, for what is found tells where the next is.
-constexpr std::size_t kAhead = 5;
-
 constexpr std::array<std::string_view, 4> kEasings = {"linear", "smooth", "in", "out"};
 
 bool is_member(const Store& store, NodeId id) {
@@ -108,7 +104,7 @@ bool Morph::advance(Store& store, double time) {
   const double now = part(time);
   const double amount = now >= 1 ? 1 : eased(easing_, now);
   for (std::size_t i = 0; i < movers_.size(); i++) {
-    fetch_ahead(store, i);
+    store.fetch_ahead(i, movers_.size(), [this](std::size_t place) { return movers_[place].id; });
     const Mover& mover = movers_[i];
     std::uint64_t rows = 0;
     for (std::uint32_t k = mover.begin; k < mover.end; k++) {
@@ -117,16 +113,6 @@ bool Morph::advance(Store& store, double time) {
     if (rows != 0) store.run_effects(mover.id, rows);
   }
   return now < 1 && left_ > 0;
-}
-
-void Morph::fetch_ahead(const Store& store, std::size_t at) const {
-  const auto there = [&](std::size_t mover) { return mover < movers_.size() && !movers_[mover].id.null(); };
-  if (const std::size_t far = at + 3 * kAhead; there(far)) {
-    store.fetch_node(movers_[far].id);
-    store.fetch_numbers(movers_[far].id);
-  }
-  if (const std::size_t nearer = at + 2 * kAhead; there(nearer)) store.fetch_thing(movers_[nearer].id);
-  if (const std::size_t near = at + kAhead; there(near)) store.fetch_effects(movers_[near].id);
 }
 
 // the row that was written, as a bit

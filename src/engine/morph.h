@@ -53,7 +53,6 @@ class Morph {
     std::uint32_t end = 0;
   };
   void index(const Store& store);
-  void fetch_ahead(const Store& store, std::size_t at) const;
   std::uint64_t go_on(Store& store, NodeId id, const Step& step, double amount) const;
   void find_again(const Store& store);
   bool find_again(const Store& store, const PresetBinding::Fit& fit, NodeId id, Step& step);

@@ -321,7 +321,10 @@ void Store::apply_marks() {
   for (int round = 0; round < 4 && !marked_.empty(); round++) {
     applying_.clear();
     applying_.swap(marked_);
-    for (const NodeId id : applying_) run_marks(id);
+    for (std::size_t i = 0; i < applying_.size(); i++) {
+      fetch_ahead(i, applying_.size(), [this](std::size_t place) { return applying_[place]; });
+      run_marks(applying_[i]);
+    }
   }
 }
 

@@ -132,8 +132,24 @@ class Store {
   void apply_marks();
   /// The same for one node, ahead of the others.
   void apply_marks(NodeId id);
-  // For who goes through many things: the processor fetches what lies far off while others go on. What one finds leads
-  // to the next: first the node and its numbers, then the thing, then what its effects look at.
+  /// For who goes through many things and is at one of them: after a tick of physics they are far off, and the
+  /// processor fetches those behind it while it goes on. What one finds leads to the next: first the node and its
+  /// numbers, then the thing, then what its effects look at. `id_of(place)`: a null or dead id is passed over.
+  template <class IdOf>
+  void fetch_ahead(std::size_t at, std::size_t count, IdOf&& id_of) const {
+    constexpr std::size_t kAhead = 5;
+    const auto fetch = [&](std::size_t place, auto&& what) {
+      if (place >= count) return;
+      const NodeId id = id_of(place);
+      if (alive(id)) what(id);
+    };
+    fetch(at + 3 * kAhead, [this](NodeId id) {
+      fetch_node(id);
+      fetch_numbers(id);
+    });
+    fetch(at + 2 * kAhead, [this](NodeId id) { fetch_thing(id); });
+    fetch(at + kAhead, [this](NodeId id) { fetch_effects(id); });
+  }
   void fetch_node(NodeId id) const {
     const Node& node = nodes_[id.slot];
     __builtin_prefetch(&node);

@@ -350,6 +350,13 @@ void Body::tell() {
   for (const auto& part : parts_) part->tell();
   for (const auto& joint : joints_) {
     joint->tell();
+    springs_ = springs_ || joint->constraint().holds_spring();
+  }
+}
+
+void Body::say_caps() {
+  if (!std::exchange(springs_, false)) return;
+  for (const auto& joint : joints_) {
     if (joint->constraint().holds_spring() && joint->motor() != nullptr) joint->motor()->say_cap();
   }
 }

@@ -88,7 +88,10 @@ class Body {
 
   /// Before Bullet steps: followers' targets from their leaders.
   void follow_leaders();
+  /// Readouts of its parts and joints. [any thread, while nobody else is at this body]
   void tell();
+  /// After tell(): logs springs that are held at less than they were told, once each.
+  void say_caps();
   /// The present pose is what health goes back to.
   void take_good_pose();
   std::uint64_t state_hash(std::uint64_t start) const;
@@ -143,7 +146,8 @@ class Body {
   std::size_t good_poses_ = 0;  // so many of them count
   std::uint64_t kept_in_ = 0;   // the guarded call whose undo knows this body
   bool restored_once_ = false;
-  bool broken_ = false;  // healed in this tick
+  bool broken_ = false;   // healed in this tick
+  bool springs_ = false;  // told in this tick
 };
 
 }  // namespace limber

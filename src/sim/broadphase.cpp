@@ -5,6 +5,13 @@
 #include <utility>
 
 namespace limber {
+namespace {
+
+/// Boxes are larger where their objects go, by the way of so many steps: they are left the more seldom. What jumps by
+/// more than its own size will not jump on.
+constexpr btScalar kStepsAhead = 2;
+
+}  // namespace
 
 struct Broadphase::Proxy : btBroadphaseProxy {
   using btBroadphaseProxy::btBroadphaseProxy;
@@ -14,6 +21,7 @@ struct Broadphase::Proxy : btBroadphaseProxy {
   bool anew = false;          // who may collide with it has changed
   int marked = 0;             // place in marked_, from 1 on; 0: none
   btScalar reach = 0;         // how far from its surface contacts begin
+  btVector3 way{0, 0, 0};     // of its box in the last step
   btVector3 normal{0, 0, 0};  // a plane's, and its distance from the origin
   btScalar distance = 0;
 
@@ -140,8 +148,10 @@ bool Broadphase::look(btCollisionObject& object) {
   btVector3 high;
   object.getCollisionShape()->getAabb(object.getWorldTransform(), low, high);
   const btVector3 ahead(gContactBreakingThreshold, gContactBreakingThreshold, gContactBreakingThreshold);
+  const btVector3 before = proxy.m_aabbMin + proxy.m_aabbMax;
   proxy.m_aabbMin = low - ahead;
   proxy.m_aabbMax = high + ahead;
+  proxy.way = (proxy.m_aabbMin + proxy.m_aabbMax - before) / 2;
   const btDbvtVolume box = btDbvtVolume::FromMM(proxy.m_aabbMin, proxy.m_aabbMax);
   return proxy.moves ? !proxy.leaf->volume.Contain(box) : NotEqual(proxy.leaf->volume, box);
 }
@@ -152,7 +162,11 @@ void Broadphase::move(btBroadphaseProxy* of) {
   if (proxy.leaf == nullptr) return;
   btDbvtVolume box = btDbvtVolume::FromMM(proxy.m_aabbMin, proxy.m_aabbMax);
   if (proxy.moves) {
-    moving_.update(proxy.leaf, box, margin_);
+    const btVector3 size = box.Extents() * 2;
+    box.Expand(btVector3(margin_, margin_, margin_));
+    const btVector3 left = size - proxy.way.absolute();
+    if (left[left.minAxis()] >= 0) box.SignedExpand(proxy.way * kStepsAhead);
+    moving_.update(proxy.leaf, box);
   } else {
     standing_.update(proxy.leaf, box);
   }

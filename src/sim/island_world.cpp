@@ -3,6 +3,8 @@
 
 #include <algorithm>
 
+#include "sim/health.h"
+
 namespace limber {
 namespace {
 
@@ -96,9 +98,12 @@ void IslandWorld::step(double h, int substeps) {
   if (!(h > 0) || substeps <= 0) return;
   const BulletMemory::Scope scope(memory);
   const btScalar step_length = to_scalar(h);
-  for_each(m_nonStaticRigidBodies, [](int, btRigidBody& body) { body.applyGravity(); });
-  for (int i = 0; i < substeps; ++i) internalSingleStepSimulation(step_length);
-  for_each(m_nonStaticRigidBodies, [](int, btRigidBody& body) { body.clearForces(); });
+  for (int i = 0; i < substeps; ++i) {
+    first_ = i == 0;
+    last_ = i + 1 == substeps;
+    internalSingleStepSimulation(step_length);
+  }
+  first_ = last_ = false;
   for_each(m_constraints, [](int, btTypedConstraint& constraint) {
     if (constraint.getConstraintType() == JointConstraint::kType) static_cast<JointConstraint&>(constraint).end_tick();
   });
@@ -150,7 +155,8 @@ void IslandWorld::look_anew(btTypedConstraint& joint) {
 
 void IslandWorld::predictUnconstraintMotion(btScalar h) {
   BT_PROFILE("predictUnconstraintMotion");
-  for_each(m_nonStaticRigidBodies, [h](int, btRigidBody& body) {
+  for_each(m_nonStaticRigidBodies, [&](int, btRigidBody& body) {
+    if (first_) body.applyGravity();
     if (body.getLinearDamping() != 0 || body.getAngularDamping() != 0) body.applyDamping(h);
   });
 }
@@ -169,11 +175,14 @@ void IslandWorld::updateAabbs() {
 
 void IslandWorld::integrateTransforms(btScalar h) {
   BT_PROFILE("integrateTransforms");
-  for_each(m_nonStaticRigidBodies, [h](int, btRigidBody& body) {
+  ails_.store(false, std::memory_order_relaxed);
+  for_each(m_nonStaticRigidBodies, [&](int, btRigidBody& body) {
     if (!body.isActive() || body.isStaticOrKinematicObject()) return;
     btTransform moved;
     body.predictIntegratedTransform(h, moved);
     body.proceedToTransform(moved);
+    if (last_) body.clearForces();
+    if (ailment(body) != nullptr) ails_.store(true, std::memory_order_relaxed);
   });
 }
 

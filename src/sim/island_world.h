@@ -2,6 +2,7 @@
 // which sets up the rows of our joints and hands back the impulses they applied.
 #pragma once
 
+#include <atomic>
 #include <memory>
 #include <vector>
 
@@ -104,6 +105,9 @@ class IslandWorld : private WorldParts, public btDiscreteDynamicsWorld {
   /// Objects of one group, >= 0, don't collide with each other from now on; -1: of none.
   void set_apart(btCollisionObject& object, int group);
 
+  /// Whether a part is beyond what is healthy (health.h) since the internal step at hand.
+  bool ails() const { return ails_.load(std::memory_order_relaxed); }
+
   /// From the next step on: joints exactly, as trees; or everything by sweeps.
   void set_direct(bool on);
   /// Since the world was made.
@@ -136,6 +140,10 @@ class IslandWorld : private WorldParts, public btDiscreteDynamicsWorld {
   void gather_batches(int least);
   void solve_islands(const btContactSolverInfo& info);
   void solve_batch(int batch, IslandSolver& solver, const btContactSolverInfo& info);
+
+  std::atomic<bool> ails_{false};
+  bool first_ = false;  // of a tick's internal steps, and the last
+  bool last_ = false;
 
   // Scratch of one internal step, kept so that nothing is allocated once the scene stands. Items of island i are
   // bodies_[body_start_[i]] up to bodies_[body_start_[i + 1]], and so on.

@@ -107,13 +107,15 @@ const Table& Motor::table() {
         applied("applied_force", "N", "What motors and springs applied along each axis, mean of the last tick.")));
     list.push_back(view<&Motor::read_torque>(
         applied("applied_torque", "N·m", "What motors and springs applied about each axis, mean of the last tick.")));
-    return Table("motor", "/physics/body/<body>/motor/<motor>", "/physics/motor", std::move(list));
+    return Table("motor", "/physics/body/<body>/motor/<motor>", "/physics/motor", std::move(list), &Motor::fetch);
   }();
   return table;
 }
 
 Motor::Motor(Joint& joint, NodeId group)
-    : joint_(joint), id_(joint.body().store().add(table(), group, joint.name(), this)) {
+    : joint_(joint),
+      constraint_(joint.constraint()),
+      id_(joint.body().store().add(table(), group, joint.name(), this)) {
   Store& store = joint_.body().store();
   const int own = joint_.own_axis();
   if (own >= 0) {
@@ -167,7 +169,7 @@ void Motor::set_target(double target) {
 void Motor::lead_to(const Vec3& target, double most) {
   Store& store = joint_.body().store();
   const AxisRows& rows = axis_rows();
-  const Vec3 now = joint_.constraint().angles();
+  const Vec3 now = constraint_.angles();
   for (const MotorMode by : {MotorMode::servo, MotorMode::spring}) {
     const Row& row = by == MotorMode::servo ? *rows.servo_position[1] : *rows.rest[1];
     std::array<double, 3> values{};
@@ -176,7 +178,7 @@ void Motor::lead_to(const Vec3& target, double most) {
     for (int axis = 0; axis < 3; axis++) {
       if (mode(3 + axis) != by) continue;
       double way = target[axis] - now[axis];
-      if (joint_.constraint().axis(3 + axis).free()) {
+      if (constraint_.axis(3 + axis).free()) {
         way = std::remainder(way, 2 * kPi);
         if (way <= -kPi) way = kPi;
       }
@@ -188,7 +190,7 @@ void Motor::lead_to(const Vec3& target, double most) {
 }
 
 void Motor::hold_here() {
-  for (int axis = 0; axis < 6; axis++) hold_[at(axis)] = joint_.constraint().value(axis);
+  for (int axis = 0; axis < 6; axis++) hold_[at(axis)] = constraint_.value(axis);
 }
 
 void Motor::follow() {
@@ -203,7 +205,6 @@ void Motor::follow() {
 void Motor::effect_axes() {
   const Store& store = joint_.body().store();
   const double* kept = store.kept_block(id_);
-  JointConstraint& constraint = joint_.constraint();
   const AxisRows& rows = axis_rows();
   const Panic& panic = joint_.body().world().panic();
   for (int axis = 0; axis < 6; axis++) {
@@ -212,23 +213,29 @@ void Motor::effect_axes() {
       return static_cast<float>(kept[r[half]->offset + static_cast<std::uint32_t>(axis % 3)]);
     };
     if (!joint_.is_open(axis)) continue;  // its drive comes when its limits open
-    AxisSettings settings = constraint.axis(axis);
+    AxisSettings settings = constraint_.axis(axis);
     settings.drive = panic.drive(mode(axis));
     settings.max_force = number(rows.max_force);
     settings.stiffness = number(rows.stiffness);
     settings.spring_damping = number(rows.damping);
-    constraint.set_axis(axis, settings);
+    constraint_.set_axis(axis, settings);
     if (mode(axis) == MotorMode::spring && number(rows.active) != 0) say_contradiction(axis);
   }
-  constraint.set_bounce(store.values(id_, *rows.bounce)[0]);
-  constraint.set_damping(store.values(id_, *rows.passive_damping)[0]);
+  constraint_.set_bounce(store.values(id_, *rows.bounce)[0]);
+  constraint_.set_damping(store.values(id_, *rows.passive_damping)[0]);
   effect_goals();
+}
+
+// what its goals are set in, which are those of the own axis nearly always
+void Motor::fetch(const void* thing) {
+  const auto& motor = *static_cast<const Motor*>(thing);
+  __builtin_prefetch(&motor.joint_);
+  for (const int own : {2, 5}) __builtin_prefetch(&motor.constraint_.axis(own));
 }
 
 void Motor::effect_goals() {
   // at every tick for every motor that is played: values straight from the block, nothing for what is locked
   const double* kept = std::as_const(joint_.body().store()).kept_block(id_);
-  JointConstraint& constraint = joint_.constraint();
   const AxisRows& rows = axis_rows();
   const Panic& panic = joint_.body().world().panic();
   const bool held = panic.on() && panic.holds_motors();
@@ -236,8 +243,8 @@ void Motor::effect_goals() {
     if (!joint_.is_open(axis)) continue;
     const auto half = static_cast<std::size_t>(axis / 3);
     const double* const own = kept + axis % 3;
-    constraint.set_goal(axis, held ? hold_[at(axis)] : own[rows.servo_position[half]->offset],
-                        own[rows.rest[half]->offset], held ? Panic::kSink : own[rows.velocity[half]->offset]);
+    constraint_.set_goal(axis, held ? hold_[at(axis)] : own[rows.servo_position[half]->offset],
+                         own[rows.rest[half]->offset], held ? Panic::kSink : own[rows.velocity[half]->offset]);
   }
 }
 
@@ -255,33 +262,33 @@ void Motor::say_cap() {
   for (int axis = 0; axis < 6; axis++) {
     const double wanted = store.values(id_, *axis_rows().stiffness[static_cast<std::size_t>(axis / 3)])[axis % 3];
     if (mode(axis) != MotorMode::spring || !joint_.is_open(axis)) continue;
-    if (joint_.constraint().stiffness_applied(axis) >= 0.999 * wanted) continue;
-    const double h = std::sqrt(joint_.constraint().effective_inertia(axis) / (16 * wanted));
+    if (constraint_.stiffness_applied(axis) >= 0.999 * wanted) continue;
+    const double h = std::sqrt(constraint_.effective_inertia(axis) / (16 * wanted));
     const double substeps = std::ceil(joint_.body().world().timestep() / std::max(h, 1e-9));
     log_warning("motor '{}/{}': a spring of {} is held at {:.4g} to stay stable; about {} substeps would allow it",
-                joint_.body().name(), name(), wanted, joint_.constraint().stiffness_applied(axis), substeps);
+                joint_.body().name(), name(), wanted, constraint_.stiffness_applied(axis), substeps);
     return;
   }
 }
 
-void Motor::read_force(double* out) const { put(out, joint_.constraint().applied_force()); }
+void Motor::read_force(double* out) const { put(out, constraint_.applied_force()); }
 
-void Motor::read_torque(double* out) const { put(out, joint_.constraint().applied_torque()); }
+void Motor::read_torque(double* out) const { put(out, constraint_.applied_torque()); }
 
 void Motor::read_linear_stiffness(double* out) const {
-  for (int axis = 0; axis < 3; axis++) out[axis] = joint_.constraint().stiffness_applied(axis);
+  for (int axis = 0; axis < 3; axis++) out[axis] = constraint_.stiffness_applied(axis);
 }
 
 void Motor::read_angular_stiffness(double* out) const {
-  for (int axis = 0; axis < 3; axis++) out[axis] = joint_.constraint().stiffness_applied(3 + axis);
+  for (int axis = 0; axis < 3; axis++) out[axis] = constraint_.stiffness_applied(3 + axis);
 }
 
 void Motor::read_linear_damping(double* out) const {
-  for (int axis = 0; axis < 3; axis++) out[axis] = joint_.constraint().damping_applied(axis);
+  for (int axis = 0; axis < 3; axis++) out[axis] = constraint_.damping_applied(axis);
 }
 
 void Motor::read_angular_damping(double* out) const {
-  for (int axis = 0; axis < 3; axis++) out[axis] = joint_.constraint().damping_applied(3 + axis);
+  for (int axis = 0; axis < 3; axis++) out[axis] = constraint_.damping_applied(3 + axis);
 }
 
 void Motor::read_mode(double* out) const {

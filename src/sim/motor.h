@@ -64,7 +64,10 @@ class Motor {
   void set_own(const Row& linear_row, const Row& angular_row, double value);
   void say_contradiction(int axis);
 
+  static void fetch(const void* thing);
+
   Joint& joint_;
+  JointConstraint& constraint_;  // the joint's
   NodeId id_;
   const Joint* leader_ = nullptr;  // of a follower, once it was looked for
   std::array<double, 6> hold_{};

@@ -9,6 +9,7 @@
 #include "base/log.h"
 #include "base/random.h"
 #include "base/text.h"
+#include "sim/health.h"
 
 namespace limber {
 
@@ -16,10 +17,8 @@ namespace {
 
 using namespace rows;
 
-// what a healthy part stays below (architecture.md, the tick, 7)
-constexpr double kMaxSpeed = 500;
-constexpr double kMaxSpin = 1000;
-constexpr double kMaxDistance = 1e4;
+/// Bodies that are read out at a time; it changes no result.
+constexpr int kBodies = 8;
 
 struct WorldRows {
   const Row *gravity, *timestep, *substeps, *iterations, *seed, *time, *tick, *solver, *fallbacks;
@@ -67,7 +66,7 @@ const Table& World::table() {
   return table;
 }
 
-World::World(Store& store, const WorldSetup& setup) : store_(store) {
+World::World(Store& store, const WorldSetup& setup) : store_(store), team_(setup.team) {
   {
     const BulletMemory::Scope scope(&bullet_memory_);
     bullet_ = std::make_unique<IslandWorld>(setup);
@@ -231,14 +230,23 @@ void World::step() {
   store_.tell(id_, *world_rows().time)[0] += timestep();
   store_.tell(id_, *world_rows().tick)[0] = static_cast<double>(tick_);
   store_.tell(id_, *world_rows().fallbacks)[0] += static_cast<double>(bullet_->direct_counts().fallbacks - fallbacks);
-  for (const auto& body : bodies_) {
-    if (!body->in_world()) continue;
-    body->tell();
-    if (!body->broken_) body->take_good_pose();
-  }
+  tell_bodies();
   if (std::exchange(healed_, false)) settle_healed();
   camera_moves_.step();
   times_ = {start - begin, before - start, after - before, clock_seconds() - after};
+}
+
+void World::tell_bodies() {
+  const auto tell = [&](int, int first, int end) {
+    for (int i = first; i < end; i++) {
+      Body& body = *bodies_[static_cast<std::size_t>(i)];
+      if (!body.in_world()) continue;
+      body.tell();
+      if (!body.broken_) body.take_good_pose();
+    }
+  };
+  share_out_places(team_.get(), static_cast<int>(bodies_.size()), tell, kBodies);
+  for (const auto& body : bodies_) body->say_caps();
 }
 
 void World::after_internal_step(btDynamicsWorld* bullet, btScalar h) {
@@ -246,26 +254,13 @@ void World::after_internal_step(btDynamicsWorld* bullet, btScalar h) {
   if (world.panic_.on()) world.panic_.brake(static_cast<double>(h));
   world.contacts_.gather(*bullet->getDispatcher());
   // what is no number must not reach the next internal step, where it would spread
+  if (!world.bullet_->ails()) return;
   for (const auto& body : world.bodies_) {
     if (!body->in_world()) continue;
     for (const auto& part : body->parts()) {
-      const btRigidBody& rigid = part->rigid();
-      if (rigid.isStaticObject()) continue;
-      const auto squared = [](const btVector3& v) {
-        const Vec3 d = from_bt(v);
-        return glm::dot(d, d);
-      };
-      const double speed = squared(rigid.getLinearVelocity());
-      const double spin = squared(rigid.getAngularVelocity());
-      const double distance = squared(rigid.getWorldTransform().getOrigin());
-      if (speed < kMaxSpeed * kMaxSpeed && spin < kMaxSpin * kMaxSpin && distance < kMaxDistance * kMaxDistance)
-        continue;
-      const bool number = std::isfinite(speed) && std::isfinite(spin) && std::isfinite(distance);
-      world.heal(*body, *part,
-                 !number                          ? "is no number any more"
-                 : speed >= kMaxSpeed * kMaxSpeed ? "is faster than 500 m/s"
-                 : spin >= kMaxSpin * kMaxSpin    ? "turns faster than 1000 rad/s"
-                                                  : "is beyond 10 km");
+      const char* const what = part->is_static() ? nullptr : ailment(part->rigid());
+      if (what == nullptr) continue;
+      world.heal(*body, *part, what);
       break;
     }
   }
@@ -303,7 +298,10 @@ void World::heal(Body& body, const Part& part, const char* what) {
 
 void World::settle_healed() {
   settle();
-  for (const auto& body : bodies_) body->broken_ = false;
+  for (const auto& body : bodies_) {
+    if (!std::exchange(body->broken_, false)) continue;
+    for (const auto& part : body->parts()) part->rigid().clearForces();  // those for a next internal step
+  }
 }
 
 std::uint64_t World::state_hash() const {

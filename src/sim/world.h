@@ -136,6 +136,7 @@ class World {
   void effect_solver();
   void effect_panic_motors() { panic_.renew(); }
   void settle_healed();
+  void tell_bodies();
   void heal(Body& body, const Part& part, const char* what);
   static void after_internal_step(btDynamicsWorld* bullet, btScalar h);
   Result<void> name_is_free(NodeId group, std::string_view kind, std::string_view name) const;
@@ -143,6 +144,7 @@ class World {
   Result<void> act_panic(std::span<const double> args);
 
   Store& store_;
+  std::shared_ptr<Team> team_;  // shares out a step, or null
   NodeId id_, body_group_, shape_group_;
   BulletMemory bullet_memory_;
   std::unique_ptr<IslandWorld> bullet_;

@@ -4,11 +4,13 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <map>
 #include <memory>
 #include <random>
 #include <set>
+#include <utility>
 #include <vector>
 
 #include "joint_rig.h"
@@ -20,6 +22,7 @@ constexpr double kFat = 0.01;   // by which boxes are larger
 constexpr double kNear = 0.02;  // Bullet's contact threshold, by which it makes all boxes larger
 constexpr int kBodies = 60;
 constexpr int kRounds = 300;
+constexpr std::size_t kLately = 12;  // rounds after which each has left its box
 
 // A cloud of boxes of all sizes, some of which stand, over two planes.
 struct Cloud {
@@ -64,6 +67,17 @@ struct Cloud {
     at.setOrigin(at.getOrigin() + btVector3(between(-0.02, 0.02), between(-0.02, 0.02), between(-0.02, 0.02)));
   }
 
+  // Metres by which a box may reach ahead of its body: two of the steps that it has lately made.
+  double ahead(std::size_t i) const {
+    return i < kBodies ? 2 * *std::max_element(steps[i].begin(), steps[i].end()) : 0.0;
+  }
+  void note_steps(int round) {
+    for (std::size_t i = 0; i < kBodies; ++i) {
+      const Vec3 at = from_bt(bodies[i]->getWorldTransform().getOrigin());
+      const Vec3 step = glm::abs(at - std::exchange(places[i], at));
+      steps[i][static_cast<std::size_t>(round) % kLately] = std::max({step.x, step.y, step.z});
+    }
+  }
   // something happens
   void change() {
     for (int i = 0; i < kBodies; ++i) nudge(i);
@@ -141,6 +155,8 @@ struct Cloud {
   btStaticPlaneShape wall{btVector3(1, 0, 0), 0};
   std::vector<std::unique_ptr<btRigidBody>> bodies;
   std::map<std::pair<int, int>, std::unique_ptr<JointConstraint>> joints;
+  std::array<Vec3, kBodies> places{};
+  std::array<std::array<double, kLately>, kBodies> steps{};
   IslandWorld world{WorldSetup{kFat, 20}};
 };
 
@@ -149,6 +165,7 @@ TEST(Broadphase, ItsPairsAreThoseThatLookingAtEverythingFinds) {
   int found = 0, left_out = 0, forbidden = 0;
   for (int round = 0; round < kRounds; ++round) {
     cloud.change();
+    cloud.note_steps(round);
     cloud.world.performDiscreteCollisionDetection();
     for (std::size_t i = 0; i < kBodies; ++i) {
       for (std::size_t k = i + 1; k < cloud.bodies.size(); ++k) {
@@ -167,7 +184,8 @@ TEST(Broadphase, ItsPairsAreThoseThatLookingAtEverythingFinds) {
         const double reach = static_cast<double>(a.getCollisionShape()->getContactBreakingThreshold(0.02F));
         const double sure = kNear + (to_plane ? reach : kNear);
         // a box that has not been left yet may be larger by twice the margin, and its corner nearer by √3 than its side
-        const double most = to_plane ? std::sqrt(3.0) * (kNear + 2 * kFat) + reach : sure + 4 * kFat;
+        const double ahead = cloud.ahead(i) + cloud.ahead(k);
+        const double most = to_plane ? std::sqrt(3.0) * (kNear + 2 * kFat + ahead) + reach : sure + 4 * kFat + ahead;
         if (distance < sure - 1e-4) {
           ASSERT_TRUE(there) << round << ": " << i << ' ' << k << " are " << distance << " m apart";
           ++found;
@@ -229,6 +247,35 @@ TEST(Broadphase, ABoxesQueryFindsWhatLiesInIt) {
   EXPECT_GT(counted, 5);
   EXPECT_LT(inside.named.size(), cloud.bodies.size());
   EXPECT_TRUE(inside.named.contains(cloud.bodies[kBodies].get()));  // a plane is everywhere
+}
+
+// A box that goes on meets what stands two of its steps ahead of it, and no more than that; one that jumps doesn't.
+TEST(Broadphase, ABoxReachesAheadOfWhatMoves) {
+  Rig rig;
+  btBoxShape small(btVector3(0.2F, 0.2F, 0.2F));
+  btRigidBody box(1, nullptr, &small, btVector3(1, 1, 1));
+  btRigidBody wall(0, nullptr, &small);
+  rig.world.addRigidBody(&box);
+  rig.world.addRigidBody(&wall);
+  // its next step, of so many metres, ends with a gap of so many to the wall
+  const auto meets_at = [&](double step, double gap) {
+    for (const double from : {0.0, 50.0}) {  // it jumps there, and has no way ahead of it
+      box.getWorldTransform().setOrigin({to_scalar(from), 0, 0});
+      rig.world.performDiscreteCollisionDetection();
+    }
+    wall.getWorldTransform().setOrigin({to_scalar(50.0 + step + 0.4 + gap), 0, 0});
+    box.getWorldTransform().setOrigin({to_scalar(50.0 + step), 0, 0});
+    rig.world.performDiscreteCollisionDetection();
+    return rig.world.getPairCache()->findPair(box.getBroadphaseHandle(), wall.getBroadphaseHandle()) != nullptr;
+  };
+  const double still = 2 * kNear + kFat;
+  for (const double step : {0.05, 0.1, 0.3}) {
+    EXPECT_TRUE(meets_at(step, still + 1.9 * step)) << step;
+    EXPECT_FALSE(meets_at(step, still + 2.1 * step)) << step;
+  }
+  EXPECT_FALSE(meets_at(0.5, still + 0.1));  // more than its size
+  rig.world.removeRigidBody(&box);
+  rig.world.removeRigidBody(&wall);
 }
 
 }  // namespace
