@@ -65,12 +65,23 @@ void PresetShape::give(std::uint32_t thing, std::uint32_t rows) {
 
 std::uint32_t PresetShape::add_all(const PresetShape& from, std::uint32_t thing, std::uint32_t parent) {
   const auto made = static_cast<std::uint32_t>(things_.size());
+  const std::uint32_t names = from.things_[thing].name_at;
+  const std::uint32_t numbers = from.first_number(thing);
+  const auto names_here = static_cast<std::uint32_t>(names_.size());
+  const std::uint32_t numbers_here = width_;
   std::uint32_t i = thing;
   do {
-    const Thing& its = from.things_[i];
-    const std::uint32_t number = add(i == thing ? parent : its.parent - thing + made, from.name(its));
-    if (its.rows != kNoRows) give(number, its.rows);
+    Thing its = from.things_[i];
+    its.parent = i == thing ? parent : its.parent - thing + made;
+    its.name_at += names_here - names;
+    if (its.rows != kNoRows) {
+      its.at += numbers_here - numbers;
+      width_ = its.at + classes_[its.rows]->width;
+    }
+    things_.push_back(its);
   } while (++i < from.things_.size() && from.things_[i].parent >= thing);
+  const Thing& last = from.things_[i - 1];
+  names_.append(from.names_, names, last.name_at + last.name_size - names);
   return made;
 }
 

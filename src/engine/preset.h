@@ -77,7 +77,7 @@ class PresetShape {
   void give(std::uint32_t thing, std::uint32_t rows);
   std::uint32_t add_class(std::shared_ptr<const PresetClass> rows);
   /// A thing of another shape, which has these classes, and all below it; those of `from` stand parents first, each
-  /// with what is below it. The answer: its number here.
+  /// with what is below it, and were given their rows in that order. The answer: its number here.
   std::uint32_t add_all(const PresetShape& from, std::uint32_t thing, std::uint32_t parent);
 
  private:

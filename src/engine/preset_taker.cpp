@@ -21,6 +21,8 @@ namespace {
 constexpr std::size_t kMostPlans = 8;
 constexpr std::size_t kRoomWorth = std::size_t{1} << 17u;  // numbers: for fewer no room is made ahead
 constexpr std::size_t kRoomSlice = std::size_t{1} << 16u;  // of it at a time
+// What comes takes far more of its tick than a look at it: where this part of all came or went, all is looked at.
+constexpr std::uint64_t kMuch = 8;
 constexpr std::size_t kThingsAhead = 3;  // things that are fetched while others are looked at: they may lie far off
 
 // many megabytes that are touched for the first time would be a fault every 4 KB; without large pages it goes as well
@@ -189,11 +191,8 @@ class PresetTaker::Planning {
     if (first == 0) return;  // nothing there has rows
     const std::uint32_t begin = shape_->width();
     const std::uint32_t made = shape_->add_all(*before_->shape, first, thing(store_.parent(id)));
-    const auto count = static_cast<std::uint32_t>(shape_->things().size()) - made;
-    for (std::uint32_t i = 0; i < count; i++) {
-      plan_.slots.push_back(before_->slots[first + i]);
-      things_[plan_.slots.back()] = made + i;
-    }
+    const auto from = before_->slots.begin() + first;
+    plan_.slots.insert(plan_.slots.end(), from, from + static_cast<std::ptrdiff_t>(shape_->things().size() - made));
     keep_pieces(before_->shape->first_number(first), begin, shape_->width() - begin);
   }
 
@@ -302,7 +301,7 @@ const PresetTaker::Plan& PresetTaker::keep(Plan plan) {
 }
 
 // what is touched for the first time is a fault in every page, which take longer than the copy
-void PresetTaker::make_room(const Store& store) {
+void PresetTaker::make_room(const Store& store, std::size_t more) {
   const std::size_t numbers = store.kept().size();
   if (numbers < kRoomWorth || room_.size() >= numbers) return;
   if (room_.capacity() < numbers) {
@@ -310,12 +309,17 @@ void PresetTaker::make_room(const Store& store) {
     room_.reserve(numbers + numbers / 8);
     ask_for_large_pages(room_);
   }
-  room_.resize(std::min(numbers, room_.size() + kRoomSlice));
+  room_.resize(std::min(numbers, room_.size() + more));
 }
 
 void PresetTaker::prepare(const Store& store) {
+  const std::uint64_t changes = store.structure_version() - structure_;
   follow(store);
-  make_room(store);
+  if (changes * kMuch >= store.view()->slot_count) {
+    make_room(store, SIZE_MAX / 2);
+    return make_ready(store);
+  }
+  make_room(store, kRoomSlice);
   if (quiet_ <= kQuiet) quiet_++;
   if (quiet_ <= kQuiet || known({}) != nullptr) return;
   if (ahead_ == nullptr) {

@@ -21,7 +21,7 @@ class PresetTaker {
  public:
   /// Things that prepare() looks at, at a time.
   static constexpr std::size_t kSlice = 500;
-  /// For so many calls of prepare() nothing has come or gone before it begins.
+  /// For so many calls of prepare() nothing has come or gone before it begins; but much that came is looked at at once.
   static constexpr int kQuiet = 30;
 
   PresetTaker();
@@ -71,7 +71,7 @@ class PresetTaker {
   static std::shared_ptr<const Preset> copy(const Store& store, const Plan& plan, std::string name,
                                             std::vector<double> room);
 
-  void make_room(const Store& store);
+  void make_room(const Store& store, std::size_t more);
   void follow(const Store& store);
   const Plan* known(const PresetChoice& choice) const;
   const Plan& keep(Plan plan);

@@ -7,8 +7,9 @@
 namespace limber {
 namespace {
 
-/// Boxes are larger where their objects go, by the way of so many steps: they are left the more seldom. What jumps by
-/// more than its own size will not jump on.
+/// Boxes that are alone are larger where their objects go, by the way of so many steps: they are left the more seldom.
+/// Among others that would cost more, since contacts are looked for with all that a box meets. What jumps by more than
+/// its own size will not jump on.
 constexpr btScalar kStepsAhead = 2;
 
 }  // namespace
@@ -19,6 +20,7 @@ struct Broadphase::Proxy : btBroadphaseProxy {
   btDbvtNode* leaf = nullptr;  // null: a plane
   bool moves = false;
   bool anew = false;          // who may collide with it has changed
+  bool near = false;          // something was found around it lately
   int marked = 0;             // place in marked_, from 1 on; 0: none
   btScalar reach = 0;         // how far from its surface contacts begin
   btVector3 way{0, 0, 0};     // of its box in the last step
@@ -165,7 +167,7 @@ void Broadphase::move(btBroadphaseProxy* of) {
     const btVector3 size = box.Extents() * 2;
     box.Expand(btVector3(margin_, margin_, margin_));
     const btVector3 left = size - proxy.way.absolute();
-    if (left[left.minAxis()] >= 0) box.SignedExpand(proxy.way * kStepsAhead);
+    if (!proxy.near && left[left.minAxis()] >= 0) box.SignedExpand(proxy.way * kStepsAhead);
     moving_.update(proxy.leaf, box);
   } else {
     standing_.update(proxy.leaf, box);
@@ -233,13 +235,16 @@ void Broadphase::calculateOverlappingPairs(btDispatcher* dispatcher) {
   share_out_places(team_, marked_.size(), [&](int range, int first, int end) {
     search(first, end, (*searches_)[static_cast<std::size_t>(range)]);
   });
-  for (int range = 0; range < ranges_of(marked_.size()); range++) {
-    for (const auto& [a, b] : (*searches_)[static_cast<std::size_t>(range)].found) pairs_.addOverlappingPair(a, b);
-  }
   for (int i = 0; i < marked_.size(); i++) {
     if (marked_[i] == nullptr) continue;
     marked_[i]->marked = 0;
-    marked_[i]->anew = false;
+    marked_[i]->anew = marked_[i]->near = false;
+  }
+  for (int range = 0; range < ranges_of(marked_.size()); range++) {
+    for (const auto& [a, b] : (*searches_)[static_cast<std::size_t>(range)].found) {
+      a->near = b->near = true;
+      pairs_.addOverlappingPair(a, b);
+    }
   }
   marked_.resizeNoInitialize(0);
 }
