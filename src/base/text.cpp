@@ -69,6 +69,7 @@ struct Matcher {
 
   bool star(std::string_view p, std::string_view s) {
     const std::string_view rest = p.substr(std::min(p.find_first_not_of('*'), p.size()));
+    if (rest.empty()) return true;
     for (std::size_t k = 0; k <= s.size() && !spent(); k++) {
       if (deeper(rest, s.substr(k))) return true;
     }
