@@ -56,6 +56,23 @@ TEST(Health, RestoresThenSwitchesOffThenResetBringsBack) {
   EXPECT_EQ(s.world.health_events(), 2u);
 }
 
+// Healed in a tick's first internal step, it falls in those that are left; in the only one, from the next tick on.
+TEST(Health, AHealedBodyFallsAsAnyOther) {
+  for (const int substeps : {1, 4}) {
+    Stage s;
+    s.set(s.world.id(), "substeps", {static_cast<double>(substeps)});
+    s.set(s.world.id(), "gravity", {0, 0, -9.81});
+    Part& ball = s.lone(sphere_model(0.1), 1);
+    s.set(ball.id(), "linear_velocity", {600, 0, 0});
+    s.ticks(1);
+    ASSERT_EQ(s.world.health_events(), 1u);
+    const double left = (substeps - 1.0) / substeps;
+    EXPECT_NEAR(ball.linear_velocity().z, -9.81 / 60 * left, 1e-5) << substeps;
+    s.ticks(1);
+    EXPECT_NEAR(ball.linear_velocity().z, -9.81 / 60 * (1 + left), 1e-5) << substeps;
+  }
+}
+
 TEST(Health, EachBoundIsWhereItIsSaidToBe) {
   const struct {
     const char* row;
