@@ -110,7 +110,7 @@ CLI::App* add_play(CLI::App& app, PlayOptions& o) {
                           ->type_name("N")
                           ->check(whole_number());
   play->add_option("--threads", o.threads,
-                   "so many threads solve bodies that don't touch each other, side by side; the result is the same")
+                   "so many threads share out each step of physics and its readouts; the result is the same")
       ->type_name("N")
       ->check(CLI::Range(1, Team::kMost));
   CLI::Option* sets = play->add_option("--set", o.sets, "set a value after the scene ran; a path or the seed's address")
