@@ -1,10 +1,13 @@
 // A walk over the store for a plan; along the plan for a preset.
 #include "engine/preset_taker.h"
 
+#include <pthread.h>
 #include <sys/mman.h>
 
 #include <algorithm>
 #include <bit>
+#include <chrono>
+#include <system_error>
 #include <unordered_map>
 #include <utility>
 
@@ -19,8 +22,6 @@ namespace limber {
 namespace {
 
 constexpr std::size_t kMostPlans = 8;
-constexpr std::size_t kRoomWorth = std::size_t{1} << 17u;  // numbers: for fewer no room is made ahead
-constexpr std::size_t kRoomSlice = std::size_t{1} << 16u;  // of it at a time
 // What comes takes far more of its tick than a look at it: where this part of all came or went, all is looked at.
 constexpr std::uint64_t kMuch = 8;
 constexpr std::size_t kThingsAhead = 3;  // things that are fetched while others are looked at: they may lie far off
@@ -300,26 +301,34 @@ const PresetTaker::Plan& PresetTaker::keep(Plan plan) {
   return plans_.emplace_back(std::move(plan));
 }
 
-// what is touched for the first time is a fault in every page, which take longer than the copy
-void PresetTaker::make_room(const Store& store, std::size_t more) {
+// What is touched for the first time is a fault in every page, which take longer than the copy: beside the show.
+void PresetTaker::make_room(const Store& store) {
   const std::size_t numbers = store.kept().size();
-  if (numbers < kRoomWorth || room_.size() >= numbers) return;
-  if (room_.capacity() < numbers) {
-    room_ = {};
-    room_.reserve(numbers + numbers / 8);
-    ask_for_large_pages(room_);
+  if (numbers < kRoomWorth) return;
+  if (making_room_.valid()) {
+    if (making_room_.wait_for(std::chrono::seconds(0)) != std::future_status::ready) return;
+    room_ = making_room_.get();
   }
-  room_.resize(std::min(numbers, room_.size() + more));
+  if (room_.size() >= numbers) return;
+  try {
+    making_room_ = std::async(std::launch::async, [count = numbers + numbers / 8] {
+      pthread_setname_np(pthread_self(), "limber-room");
+      std::vector<double> room;
+      room.reserve(count);
+      ask_for_large_pages(room);
+      room.resize(count);
+      return room;
+    });
+  } catch (const std::system_error&) {
+    // no thread is to be had: the copy will take longer
+  }
 }
 
 void PresetTaker::prepare(const Store& store) {
   const std::uint64_t changes = store.structure_version() - structure_;
   follow(store);
-  if (changes * kMuch >= store.view()->slot_count) {
-    make_room(store, SIZE_MAX / 2);
-    return make_ready(store);
-  }
-  make_room(store, kRoomSlice);
+  make_room(store);
+  if (changes * kMuch >= store.view()->slot_count) return make_ready(store);
   if (quiet_ <= kQuiet) quiet_++;
   if (quiet_ <= kQuiet || known({}) != nullptr) return;
   if (ahead_ == nullptr) {

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <cstdint>
+#include <future>
 #include <map>
 #include <memory>
 #include <optional>
@@ -23,6 +24,9 @@ class PresetTaker {
   static constexpr std::size_t kSlice = 500;
   /// For so many calls of prepare() nothing has come or gone before it begins; but much that came is looked at at once.
   static constexpr int kQuiet = 30;
+
+  /// Numbers: for fewer no room is made ahead.
+  static constexpr std::size_t kRoomWorth = std::size_t{1} << 15u;
 
   PresetTaker();
   ~PresetTaker();
@@ -71,7 +75,7 @@ class PresetTaker {
   static std::shared_ptr<const Preset> copy(const Store& store, const Plan& plan, std::string name,
                                             std::vector<double> room);
 
-  void make_room(const Store& store, std::size_t more);
+  void make_room(const Store& store);
   void follow(const Store& store);
   const Plan* known(const PresetChoice& choice) const;
   const Plan& keep(Plan plan);
@@ -84,6 +88,7 @@ class PresetTaker {
   std::uint64_t structure_ = 0;      // the plans'
   int quiet_ = 0;
   std::vector<double> room_;  // for the numbers of the next one
+  std::future<std::vector<double>> making_room_;
 };
 
 }  // namespace limber

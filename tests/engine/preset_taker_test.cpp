@@ -112,6 +112,18 @@ TEST_F(PresetTakerTest, HalfReadyIsFinishedAtOnce) {
   EXPECT_TRUE(taker.ready(rig.store));
 }
 
+// where copies are worth room that is made beside the show, and where the room is too small for what came
+TEST_F(PresetTakerTest, ManyNumbersAreTheSameInRoomMadeAhead) {
+  PresetTaker taker;
+  for (const int more : {7000, 1, 1500}) {
+    add_bodies(more);
+    for (int i = 0; i < 3; i++) taker.prepare(rig.store);
+    const auto taken = *taker.take(rig.store, "all", {});
+    EXPECT_GT(taken->values.size(), PresetTaker::kRoomWorth);
+    expect_same(*taken, *fresh());
+  }
+}
+
 // what stands as it stood is not looked at again: whatever came, went or moved beside it
 TEST_F(PresetTakerTest, KeepsWhatStandsAsItStood) {
   PresetTaker taker;
