@@ -70,8 +70,8 @@ Json bench_preset(const BenchOptions& options) {
   LIMBER_CHECK(bench.engine().world().add_body("more").ok());
   bench.ticks(200);
   const double first_store = bench.preset("store", "a");
-  // something came, and there was no time to look at it
   bench.ticks(200);
+  // something came, and there was no time to look at it
   LIMBER_CHECK(bench.engine().world().add_body("another").ok());
   bench.ticks(2);
   const double soon_store = bench.preset("store", "soon");

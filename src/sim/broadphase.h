@@ -21,7 +21,8 @@ class Broadphase : public btBroadphaseInterface {
  public:
   BT_DECLARE_ALIGNED_ALLOCATOR();
 
-  /// Metres that the boxes of what moves are larger: so far it moves before its neighbours are looked for again.
+  /// Metres that the boxes of what moves are larger: so far it moves before its neighbours are looked for again;
+  /// those of what is alone reach ahead of it besides.
   /// `team`, which may be null, looks for pairs side by side.
   Broadphase(double margin, Team* team);
   ~Broadphase() override;
