@@ -18,6 +18,7 @@ namespace {
 // ignored by default and used by nobody here: a late one does no harm
 constexpr int kSignal = SIGURG;
 constexpr std::int64_t kAgain = 5'000'000;  // a signal that met an unlucky moment is sent again after that, ns
+constexpr std::int64_t kAnswer = 200'000;   // so soon one who computes has answered, ns
 
 thread_local Watch* watched_here = nullptr;
 
@@ -45,7 +46,10 @@ void on_signal(int) {
   Watch* const watch = watched_here;
   if (watch == nullptr) return;
   const std::uint64_t call = __atomic_load_n(&watch->call, __ATOMIC_RELAXED);
-  if ((call & 1u) != 0 && __atomic_load_n(&watch->asked, __ATOMIC_RELAXED) == call) watch->stop(*watch);
+  if ((call & 1u) == 0) return;
+  if (__atomic_load_n(&watch->hailed, __ATOMIC_RELAXED) == call)
+    __atomic_store_n(&watch->answered, call, __ATOMIC_RELAXED);
+  if (__atomic_load_n(&watch->asked, __ATOMIC_RELAXED) == call) watch->stop(*watch);
 }
 
 void install_handler() {
@@ -153,12 +157,19 @@ std::int64_t Watchdog::look(Watch& watch, std::int64_t poll) {
   if (watch.seen != call) {
     watch.seen = call;
     watch.since = now;
+    watch.second_half = false;
   }
-  const std::int64_t left = load(watch.budget) - (now - watch.since);
+  if (!watch.second_half && load(watch.answered) == call) {
+    watch.since = now;
+    watch.second_half = true;
+  }
+  const std::int64_t budget = load(watch.budget);
+  const std::int64_t part = watch.second_half ? budget - budget / 2 : budget / 2;
+  const std::int64_t left = part - (now - watch.since);
   if (left > 0) return std::min(left, poll);
-  store(watch.asked, call);
+  store(watch.second_half ? watch.asked : watch.hailed, call);
   syscall(SYS_tgkill, getpid(), load(watch.thread), kSignal);
-  return std::min(poll, kAgain);
+  return watch.second_half ? std::min(poll, kAgain) : kAnswer;
 }
 
 }  // namespace limber

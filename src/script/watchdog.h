@@ -1,5 +1,7 @@
 // Watchdog: a thread that reads the CPU clock of the thread that runs Lua, and stops a call that takes too long. What
-// is measured is computing, never waiting: a loaded machine stops nobody who is innocent.
+// is measured is computing, never waiting: a loaded machine stops nobody who is innocent. A virtual machine whose
+// processor was taken away for a while counts that as computing, so a call is stopped only if it computes for the
+// second half of its budget after it has answered a signal: who was away answers when back, and then ends in time.
 #pragma once
 
 #include <condition_variable>
@@ -20,11 +22,13 @@ struct Watch {
   void (*stop)(Watch& watch) = nullptr;
   void* owner = nullptr;
 
-  // shared by the two threads: through std::atomic_ref only; plain, because a signal handler reads the first two
-  std::uint64_t call = 0;   ///< Odd while a call runs.
-  std::uint64_t asked = 0;  ///< The call that is to be stopped.
-  std::int64_t budget = 0;  ///< CPU time of the call, ns.
-  clockid_t clock = 0;      ///< Of the thread that runs the call.
+  // shared by the two threads: through std::atomic_ref only; plain, because a signal handler uses the first four
+  std::uint64_t call = 0;      ///< Odd while a call runs.
+  std::uint64_t asked = 0;     ///< The call that is to be stopped.
+  std::uint64_t hailed = 0;    ///< The call that is to answer.
+  std::uint64_t answered = 0;  ///< The call that has answered.
+  std::int64_t budget = 0;     ///< CPU time of the call, ns.
+  clockid_t clock = 0;         ///< Of the thread that runs the call.
   pid_t thread = 0;
 
   /// A call begins and ends on this thread. No lock, no allocation; a few nanoseconds.
@@ -36,8 +40,9 @@ struct Watch {
   bool stop_asked();
 
   // the watchdog's own
-  std::uint64_t seen = 0;
+  std::uint64_t seen = 0;  // the call that began, or answered, when the clock showed `since`
   std::int64_t since = 0;
+  bool second_half = false;
 };
 
 class Watchdog {

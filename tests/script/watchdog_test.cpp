@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <csignal>
 #include <ctime>
 #include <thread>
 
@@ -78,6 +79,25 @@ TEST_F(WatchdogTest, WaitingIsNotComputing) {
     while (cpu_now() - begin < 30 * kMillisecond) continue;
   }).join();
   EXPECT_FALSE(stopped());
+  watch.end();
+}
+
+// a virtual machine's processor that is taken away goes on to count as computing, but hears no signal
+TEST_F(WatchdogTest, WhoWasAwayIsNotStopped) {
+  sigset_t signal, before;
+  sigemptyset(&signal);
+  sigaddset(&signal, SIGURG);
+  pthread_sigmask(SIG_BLOCK, &signal, &before);
+  const std::int64_t begin = cpu_now();
+  watch.begin(100 * kMillisecond);
+  compute_until([&] { return cpu_now() - begin > 300 * kMillisecond; });
+  EXPECT_FALSE(watch.stop_asked());
+  pthread_sigmask(SIG_SETMASK, &before, nullptr);  // back again: it answers
+  EXPECT_FALSE(stopped());
+  // and is stopped when it computes on for half of its budget
+  const std::int64_t back = cpu_now();
+  EXPECT_TRUE(compute_until([&] { return stopped(); }));
+  EXPECT_GE(cpu_now() - back, 50 * kMillisecond);
   watch.end();
 }
 
