@@ -1,5 +1,4 @@
 -- More than a megabyte to compile: refused, and it goes on.
--- limits: call_ms=50
 sim:on_step(function()
   local f, why = load(("x = 1 "):rep(200000))
   assert(f == nil and why == "load takes up to 1 MB of text")

@@ -1,6 +1,5 @@
 -- Messages with text, one after the other.
--- limits: call_ms=50
--- expect: 7: one call may send up to 10000 messages and 1 MB of text
+-- expect: 6: one call may send up to 10000 messages and 1 MB of text
 -- sent: 0
 local text = ("x"):rep(1000)
 sim:on_step(function()
