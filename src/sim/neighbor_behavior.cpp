@@ -57,7 +57,10 @@ void NeighborBehavior::step_alike(std::span<const std::uint32_t> numbers, double
   const std::span<const NeighborMeans> means =
       group()->neighbors().means(asking, values[min_dist], values[max_dist], wants());
   std::size_t at = 0;
-  for (const std::uint32_t number : numbers) {
+  constexpr std::size_t kAhead = 12;
+  for (std::size_t i = 0; i < numbers.size(); i++) {
+    const std::uint32_t number = numbers[i];
+    if (i + kAhead < numbers.size()) world().loads().fetch(all.load[all.first_part[numbers[i + kAhead]]]);
     const std::span<Part* const> parts = parts_of(number);
     const std::uint32_t first = all.first_part[number];
     act({kept + all.values[number], parts, &means[at], dt, world().loads(), &all.load[first], kept, &all.mass[first],

@@ -113,7 +113,13 @@ void NeighborSet::gather() {
   const double* const live = world_.store().live().data();
   cloud_.clear();
   indices_.clear();
+  constexpr std::size_t kAhead = 12;  // after a tick of physics these are far off: asked for in time
   for (std::size_t i = 0; i < parts_.size(); i++) {
+    if (i + kAhead < parts_.size()) {
+      __builtin_prefetch(live + spots_[i + kAhead].enabled);
+      __builtin_prefetch(live + spots_[i + kAhead].live);
+      __builtin_prefetch(live + spots_[i + kAhead].live + part_offsets().spin + 2);
+    }
     if (live[spots_[i].enabled] == 0) continue;
     const Vec3 at = center_of(spots_[i]);
     centers_[i] = at;

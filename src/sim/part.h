@@ -85,12 +85,14 @@ class Part {
   void tell();
   bool reports_contacts() const;
 
+  /// Has the processor ask for what Bullet knows of a part: a step or more before it is wanted.
+  static void fetch(const void* thing);
+
   /// Pose and velocity of the store into Bullet: the effects of their rows, and of health.
   void effect_pose();
   void effect_velocity();
 
  private:
-  static void fetch(const void* thing);
   void effect_mass();
   void effect_damping();
   void effect_surface();

@@ -41,8 +41,25 @@ void PartLoads::drop() {
   waiting_.clear();
 }
 
+// Many parts are far off by now. What one finds leads to the next: the load, its part, what Bullet has of that.
+void PartLoads::fetch_ahead(std::size_t at) const {
+  constexpr std::size_t kAhead = 5, kLine = 64;
+  const auto part = [&](std::size_t far) -> const Part* {
+    return at + far < waiting_.size() ? loads_[waiting_[at + far]].part : nullptr;
+  };
+  if (at + 3 * kAhead < waiting_.size()) fetch(waiting_[at + 3 * kAhead]);
+  if (const auto* const far = reinterpret_cast<const char*>(part(2 * kAhead)); far != nullptr) {
+    __builtin_prefetch(far);
+    __builtin_prefetch(far + kLine);
+    __builtin_prefetch(far + sizeof(Part) - 1);
+  }
+  if (const Part* const near = part(kAhead); near != nullptr) Part::fetch(near);
+}
+
 void PartLoads::push() {
-  for (const std::uint32_t place : waiting_) {
+  for (std::size_t i = 0; i < waiting_.size(); i++) {
+    fetch_ahead(i);
+    const std::uint32_t place = waiting_[i];
     Load& load = loads_[place];
     load.waits = false;
     if (load.part != nullptr) load.part->push(load, kicks_[place]);

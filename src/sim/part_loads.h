@@ -45,6 +45,8 @@ class PartLoads {
     const std::uint32_t place = slot < places_.size() ? places_[slot] : kNone;
     return place == kNone ? nullptr : &load(place);
   }
+  /// Soon something will be added there.
+  [[gnu::always_inline]] void fetch(std::uint32_t place) const { __builtin_prefetch(&loads_[place], 1); }
   void clear(std::uint32_t place);
   /// What waits is lost.
   void drop();
@@ -60,6 +62,7 @@ class PartLoads {
 
  private:
   friend class WorldKey;
+  void fetch_ahead(std::size_t at) const;
   static constexpr std::uint32_t kNone = ~std::uint32_t{0};
   void wait(std::uint32_t place) {
     loads_[place].waits = true;
