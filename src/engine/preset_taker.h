@@ -5,15 +5,14 @@
 
 #include <cstdint>
 #include <future>
-#include <map>
 #include <memory>
 #include <optional>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include "base/result.h"
 #include "engine/preset.h"
+#include "engine/preset_plan.h"
 #include "params/store.h"
 
 namespace limber {
@@ -37,9 +36,9 @@ class PresetTaker {
   /// next: once a tick.
   void prepare(const Store& store);
   /// All of the way, where there is time.
-  void make_ready(const Store& store) { (void)plan_for(store, {}); }
+  void make_ready(const Store& store) { (void)every(store); }
   /// Whether that is done.
-  bool ready(const Store& store) const { return structure_ == store.structure_version() && known({}) != nullptr; }
+  bool ready(const Store& store) const { return structure_ == store.structure_version() && every_; }
   /// What `choice` names, as it is now. Errors: a pattern that is none, is too much work, or reaches no property.
   Result<std::shared_ptr<const Preset>> take(const Store& store, std::string name, const PresetChoice& choice);
   /// From now on it is another store.
@@ -49,43 +48,21 @@ class PresetTaker {
   static std::shared_ptr<const Preset> take_script(const Store& store);
 
  private:
-  struct Piece {  // numbers that stand side by side in the store and in the preset
-    std::uint32_t from = 0;
-    std::uint32_t count = 0;
-    bool live = false;
-    std::uint32_t at = 0;  // in the preset
-  };
-  // some rows of a class, as a thing that has them gives them
-  struct Cut {
-    std::uint32_t rows = 0;
-    std::vector<Piece> pieces;  // from where the thing's own numbers begin
-  };
-  using Cuts = std::map<std::pair<const Table*, std::uint64_t>, Cut>;
-  struct Plan {
-    PresetChoice choice;
-    std::shared_ptr<const PresetShape> shape;
-    std::vector<Piece> pieces;
-    std::uint64_t structure = 0;       // the store's
-    std::vector<std::uint32_t> slots;  // of the shape's things
-    Cuts cuts;                         // the shape's classes
-  };
-  class Planning;
-
   /// `room`: its memory holds the numbers, if there is enough.
-  static std::shared_ptr<const Preset> copy(const Store& store, const Plan& plan, std::string name,
+  static std::shared_ptr<const Preset> copy(const Store& store, const PresetPlan& plan, std::string name,
                                             std::vector<double> room);
 
   void make_room(const Store& store);
   void follow(const Store& store);
-  const Plan* known(const PresetChoice& choice) const;
-  const Plan& keep(Plan plan);
-  Result<const Plan*> plan_for(const Store& store, const PresetChoice& choice);
-  const Plan* before(const PresetChoice& choice) const;
+  void plan_ahead(const Store& store, std::size_t things);
+  const PresetPlan& every(const Store& store);
+  Result<const PresetPlan*> plan_for(const Store& store, const PresetChoice& choice);
 
-  std::vector<Plan> plans_;          // those that hold
-  std::optional<Plan> before_;       // of every property, before something came or went
-  std::unique_ptr<Planning> ahead_;  // of every property, on its way
-  std::uint64_t structure_ = 0;      // the plans'
+  std::optional<PresetPlan> every_;        // of every property
+  std::vector<PresetPlan> choices_;        // made of that
+  std::optional<PresetPlan> before_;       // of every property, before something came or went
+  std::unique_ptr<PresetPlanning> ahead_;  // of every property, on its way
+  std::uint64_t structure_ = 0;            // the plans'
   int quiet_ = 0;
   std::vector<double> room_;  // for the numbers of the next one
   std::future<std::vector<double>> making_room_;

@@ -20,6 +20,11 @@
 
 namespace limber {
 
+/// Whether the address may reach several places: it is matched, not looked up.
+inline bool is_address_pattern(std::string_view address) {
+  return address.find_first_of("?*[{") != std::string_view::npos || address.find("//") != std::string_view::npos;
+}
+
 /// A Shape has a `Place` {node, row}, a `PlaceRows` {node, rows as bits} and of its nodes: root(), name, table, path,
 /// key (a number of its own, below keys()), exact_child (the child of exactly that name, or nothing), and each_child,
 /// whose function says whether to go on.
@@ -71,7 +76,7 @@ class PathWalk {
   Result<std::vector<PlaceRows>> match_things(std::string_view pattern, std::size_t limit) {
     if (pattern.empty() || pattern.front() != '/')
       return Error{fmt::format("'{}' is no address: it must begin with /", printable(pattern))};
-    if (pattern.find_first_of("?*[{") == std::string_view::npos && pattern.find("//") == std::string_view::npos) {
+    if (!is_address_pattern(pattern)) {
       const Result<Place> place = find(shape_, pattern);
       if (!place) return Error{place.error()};
       count_ = 1;

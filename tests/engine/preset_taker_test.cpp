@@ -2,8 +2,14 @@
 #include "engine/preset_taker.h"
 
 #include <algorithm>
+#include <set>
+#include <span>
+
+#include <fmt/ranges.h>
 
 #include "engine/rig.h"
+#include "params/catalog.h"
+#include "sim/part.h"
 
 namespace limber::engine_test {
 namespace {
@@ -110,6 +116,100 @@ TEST_F(PresetTakerTest, HalfReadyIsFinishedAtOnce) {
   expect_same(**taker.take(rig.store, "some", part), *fresh(part));
   expect_same(**taker.take(rig.store, "all", {}), *fresh());
   EXPECT_TRUE(taker.ready(rig.store));
+}
+
+// rows of a preset, each with its numbers
+std::set<std::string> rows_of(const Preset& preset) {
+  std::set<std::string> texts;
+  for (std::uint32_t i = 0; i < preset.shape->things().size(); i++) {
+    const PresetShape::Thing& thing = preset.shape->things()[i];
+    const PresetClass* const rows = preset.shape->rows(thing);
+    for (std::size_t k = 0; rows != nullptr && k < rows->rows.size(); k++) {
+      const double* const values = preset.values.data() + thing.at + rows->offsets[k];
+      texts.insert(fmt::format("{}/{} {}", preset.shape->path(i), rows->rows[k].name,
+                               fmt::join(std::span(values, rows->rows[k].width), " ")));
+    }
+  }
+  return texts;
+}
+
+// what an address means is asked of the store, place by place
+std::set<std::string> rows_of(const Store& store, const PresetChoice& choice) {
+  std::set<std::string> texts;
+  const auto add = [&](NodeId id, const Row& row) {
+    const bool state = row.kind == RowKind::state && &store.table(id) == &Part::table();
+    const bool pose = row.name == "position" || row.name == "rotation";
+    if (row.kind != RowKind::property && !(state && (pose ? choice.poses : choice.velocities))) return;
+    if (!row.stored() || (row.refuse != nullptr && !row.refuse(store.thing(id), store.values(id, row)))) return;
+    texts.insert(
+        fmt::format("{}/{} {}", store.path(id), row.name, fmt::join(std::span(store.values(id, row), row.width), " ")));
+  };
+  std::vector<NodeId> parts;
+  for (const std::string& pattern : choice.rows) {
+    PatternBudget budget;
+    const auto places = match_places(store, pattern, budget);
+    for (const Place& place : *places) {
+      store.walk(place.node, [&](NodeId id) {
+        if (place.row != nullptr && id != place.node) return;
+        if (place.row != nullptr)
+          add(id, *place.row);
+        else
+          for (const Row& row : store.table(id).rows()) add(id, row);
+        if (&store.table(id) == &Part::table()) parts.push_back(id);
+      });
+    }
+  }
+  // where parts are: of those that are meant, else of all
+  if (parts.empty()) {
+    store.walk(store.root(), [&](NodeId id) {
+      if (&store.table(id) == &Part::table()) parts.push_back(id);
+    });
+  }
+  for (const NodeId part : parts) {
+    for (const Row& row : Part::table().rows()) {
+      if (row.kind == RowKind::state) add(part, row);
+    }
+  }
+  return texts;
+}
+
+TEST_F(PresetTakerTest, AChoiceIsWhatItsPatternsMean) {
+  add_bodies(25);
+  const std::vector<PresetChoice> choices = {
+      {{"/physics/body/*/part/*/*"}, {}, false, false},
+      {{"/physics/body/*/part/*/{mass,friction}"}, {}, false, false},
+      {{"/physics/body/more1*//*"}, {}, true, false},
+      {{"/physics/body/more[12]//friction", "/physics/sim/gravity"}, {}, false, true},
+      {{"/physics/body/more3"}, {}, true, true},
+      {{"/physics/body/more3/part/tip/mass", "/physics/body/more4/part/tip/mass"}, {}, false, false},
+      {{"/visuals"}, {}, true, false},
+      {{"//friction"}, {}, false, false},
+      {{"/Physics/BODY/more?/Part/tip/restitution"}, {}, false, false},
+      {{"/physics/body"}, {}, false, true},
+      {{"/"}, {}, true, true},
+  };
+  for (const PresetChoice& choice : choices) {
+    SCOPED_TRACE(choice.rows.front());
+    PresetTaker taker;
+    const auto taken = taker.take(rig.store, "some", choice);
+    ASSERT_TRUE(taken.ok()) << taken.error();
+    EXPECT_EQ(rows_of(**taken), rows_of(rig.store, choice));
+    expect_same(**taker.take(rig.store, "again", choice), **taken);
+  }
+  // nothing chosen is everything, here with what parts are
+  const auto all = *PresetTaker().take(rig.store, "all", {{}, {}, true, true});
+  EXPECT_EQ(rows_of(*all), rows_of(rig.store, {{"/"}, {}, true, true}));
+}
+
+TEST_F(PresetTakerTest, AChoiceThatReachesNothingIsSaid) {
+  const auto fault = [&](const char* pattern) {
+    const auto taken = PresetTaker().take(rig.store, "some", {{pattern}, {}, false, false});
+    return taken.ok() ? "" : taken.error();
+  };
+  EXPECT_EQ(fault("/physics/body/*/part/*/position"), "'/physics/body/*/part/*/position' reaches no property");
+  EXPECT_EQ(fault("/physics/body/nobody*"), "'/physics/body/nobody*' reaches no property");
+  EXPECT_EQ(fault("/physics/bodi").find("there is no 'bodi' in /physics"), 0u) << fault("/physics/bodi");
+  EXPECT_EQ(fault("body"), "'body' is no address: it must begin with /");
 }
 
 // where copies are worth room that is made beside the show, and where the room is too small for what came
