@@ -186,7 +186,7 @@ TEST_F(PresetTakerTest, AChoiceIsWhatItsPatternsMean) {
       {{"//friction"}, {}, false, false},
       {{"/Physics/BODY/more?/Part/tip/restitution"}, {}, false, false},
       {{"/physics/body"}, {}, false, true},
-      {{"/"}, {}, true, true},
+      {{"/physics", "/visuals"}, {}, true, true},
   };
   for (const PresetChoice& choice : choices) {
     SCOPED_TRACE(choice.rows.front());
@@ -198,7 +198,7 @@ TEST_F(PresetTakerTest, AChoiceIsWhatItsPatternsMean) {
   }
   // nothing chosen is everything, here with what parts are
   const auto all = *PresetTaker().take(rig.store, "all", {{}, {}, true, true});
-  EXPECT_EQ(rows_of(*all), rows_of(rig.store, {{"/"}, {}, true, true}));
+  EXPECT_EQ(rows_of(*all), rows_of(rig.store, {{"/physics", "/visuals"}, {}, true, true}));
 }
 
 TEST_F(PresetTakerTest, AChoiceThatReachesNothingIsSaid) {
