@@ -33,7 +33,7 @@ void expect_whole(const LivingBlocks& blocks) {
 void live_on(Arena& arena, LivingBlocks& blocks, Random& random, int steps) {
   const auto some = [&](double n) { return static_cast<std::size_t>(random.uniform() * n); };
   for (int i = 0; i < steps; i++) {
-    const std::size_t size = 1 + some(some(4) == 0 ? 60000 : some(3) == 0 ? 5000 : 300);
+    const std::size_t size = 1 + some(some(4) == 0 ? (some(8) == 0 ? 300000 : 60000) : some(3) == 0 ? 5000 : 300);
     const auto fill = static_cast<unsigned char>(some(256));
     if (blocks.empty() || some(5) < 2) {
       auto* const got = static_cast<unsigned char*>(arena.allocate(size));

@@ -40,8 +40,9 @@ TEST(PageStore, SharesWhatIsTheSame) {
   pages.append(first, memory, nullptr);
   EXPECT_EQ(pages.bytes(), 100 * kPage);
   memory[50 * kPage] ^= std::byte{1};
+  memory[71 * kPage - 1] ^= std::byte{1};
   pages.append(second, memory, &first);
-  EXPECT_EQ(pages.bytes(), 101 * kPage);
+  EXPECT_EQ(pages.bytes(), 102 * kPage);
   // either may go first
   pages.release(first);
   EXPECT_EQ(pages.bytes(), 100 * kPage);
