@@ -38,6 +38,7 @@ class BenchShow {
     options.scene = (folder_ / "scripts" / "scene.lua").string();
     options.scene_options.data_dir = data_dir();
     options.scene_options.limits.run_ms *= 10;
+    options.scene_options.limits.call_ms *= 10;
     engine_ = std::make_unique<Engine>(link_, options);
     started_ = engine_->start();
   }
