@@ -12,10 +12,10 @@ namespace {
 constexpr int kExchanges = 16;
 /// Rounds in which axes may still be given up once contacts are known.
 constexpr int kRounds = 8;
-/// Turns of a body in one step, rad: motors keep below the first; beyond the second, as far as Bullet turns a body
-/// exactly, locks are not bent.
+/// Motors keep below this turn of a body in one step, rad.
 constexpr double kMostTurn = 0.5;
-constexpr double kMostBend = kPi / 4;
+/// So often what whips when all is solved is calmed, and all is solved again.
+constexpr int kCalmings = 4;
 /// Fastest bend, m/s: what flies apart is not pulled together in one step.
 constexpr double kFastestBend = 20;
 /// Partings below this are left alone, m.
@@ -170,7 +170,7 @@ Vec3 IslandDirect::bend_of(const Link& link, const IslandPools& pools, double h)
   };
   const Spatial a = moving(link.body_a);
   const Spatial b = moving(link.body_b);
-  if (glm::length(a.angular) * h > kMostBend || glm::length(b.angular) * h > kMostBend) return link.bent;
+  if (glm::length(a.angular) * h > kBulletsTurn || glm::length(b.angular) * h > kBulletsTurn) return link.bent;
   const Vec3 arm_a = from_bt(joint.arm_a());
   const Vec3 arm_b = from_bt(joint.arm_b());
   Vec3 gap(0);
@@ -277,26 +277,35 @@ bool IslandDirect::finite() const {
   return true;
 }
 
-bool IslandDirect::solve(IslandPools pools, const btContactSolverInfo& info) {
+// Everything but the bends.
+bool IslandDirect::settle_all(IslandPools& pools, double h) {
   outer_.clear();
   box_factors_ = 0;
-  fixed_outer_ = 0;
+  collect_contacts(pools);
+  collect_loops(pools);
+  fixed_outer_ = outer_.size();
+  bool settled = settle();
+  for (int pass = 0; pass < 3 && settled && limit_turns(pools, h); ++pass) settled = settle();
+  return settled;
+}
+
+bool IslandDirect::solve(IslandPools pools, const btContactSolverInfo& info) {
   if (pools.contacts.size() + pools.frictions.size() + pools.rollings.size() > kMostContactRows) {
     counts_.plain++;
     return false;
   }
+  const double h = static_cast<double>(info.m_timeStep);
+  before_calm_.clear();
   bool solved = build_forest(pools);
   if (solved && crowded(pools)) {
     counts_.plain++;
     return false;
   }
+  if (solved && calm_whips(pools, h, Whips::before)) solved = build_forest(pools);
+  if (solved) solved = settle_all(pools, h);
+  for (int pass = 0; pass < kCalmings && solved && calm_whips(pools, h, Whips::after); ++pass)
+    solved = build_forest(pools) && settle_all(pools, h);
   if (solved) {
-    collect_contacts(pools);
-    collect_loops(pools);
-    fixed_outer_ = outer_.size();
-    const double h = static_cast<double>(info.m_timeStep);
-    solved = settle();
-    for (int pass = 0; pass < 3 && solved && limit_turns(pools, h); ++pass) solved = settle();
     unbent_work_.clear();
     for (const Tree& t : trees_) unbent_work_.push_back(passive(t) ? work_of_locks(t, pools) : 0);
     for (int pass = 0; pass < 4 && solved && bend_locks(pools, h); ++pass) solved = settle();
@@ -304,6 +313,7 @@ bool IslandDirect::solve(IslandPools pools, const btContactSolverInfo& info) {
   }
   if (!solved || contradicts(system_, static_cast<int>(body_of_.size()), pools)) {
     counts_.fallbacks++;
+    forget_calm(pools);
     start_contacts_anew(pools);
     for (const Link& link : links_) {
       link.joint->forget_impulses();

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <utility>
 #include <vector>
 
 #include "sim/box_solver.h"
@@ -12,7 +13,7 @@
 
 namespace limber {
 
-/// What Bullet set up for the island: read, and written to only when all is solved.
+/// What Bullet set up for the island: read, and written to only when all is solved; but see calm_whips().
 struct IslandPools {
   btAlignedObjectArray<btSolverBody>& bodies;
   btConstraintArray& contacts;
@@ -64,6 +65,10 @@ class IslandDirect {
     int first;
     int last;
   };
+  struct Rigid {  // motion of a tree as if it were one piece
+    Vec3 center{0};
+    Spatial velocity;  // of the centre of mass
+  };
   struct Side {  // what an outer row does to one body
     int node = -1;
     Spatial pull;
@@ -107,6 +112,12 @@ class IslandDirect {
   int give_up_touched();
   double solve_outer();
   bool settle();
+  bool settle_all(IslandPools& pools, double h);
+  enum class Whips : std::uint8_t { before, after };  // as the step began; as it was solved
+  bool calm_whips(IslandPools& pools, double h, Whips which);
+  Spatial moving(int node, const IslandPools& pools, Whips which) const;
+  Rigid motion_of(const Tree& tree, const IslandPools& pools, Whips which) const;
+  void forget_calm(IslandPools& pools) const;
   bool limit_turns(const IslandPools& pools, double h);
   bool bend_locks(const IslandPools& pools, double h);
   void ask_for_bend(Link& link, double h);
@@ -122,6 +133,8 @@ class IslandDirect {
   void write(IslandPools& pools);
   void take_residuals(const IslandPools& pools);
 
+  /// What Bullet turns a body by in a step at most, rad, however fast it is (ANGULAR_MOTION_THRESHOLD).
+  static constexpr double kBulletsTurn = kPi / 4;
   /// More contact and friction rows than this go to the plain solver: the dense response would cost more than it gains.
   static constexpr int kMostContactRows = 360;
   /// What outer rows may miss, m/s and rad/s, when they count as solved; and when they still will do.
@@ -147,6 +160,8 @@ class IslandDirect {
   std::vector<unsigned char> path_;
   std::vector<double> impulses_;
   std::vector<int> push_rows_;
+  std::vector<std::pair<btVector3, btVector3>>
+      before_calm_;                  // body: changes that contacts began with; empty: not calmed
   std::size_t fixed_outer_ = 0;      // contacts and loops; behind them axes that were given up
   std::vector<double> unbent_work_;  // tree: of its locks, unbent, J
   std::uint64_t box_factors_ = 0;    // that box_ has the responses of
