@@ -97,6 +97,11 @@ TEST(Take, BeginsInTheMiddleOfAShowWithAReset) {
     show.send("/take/record", "middle");
     show.ticks(1);
     EXPECT_EQ(show.engine.world().tick(), 0u) << "the scene from its start";
+    // what was stored before is known behind it
+    show.send("/scene/wind", 2.5);
+    show.ticks(1);
+    show.send("/preset/recall", "kept");
+    show.ticks(1);
     play_wildly(show, folder, 60, 4);
     show.send("/take/stop");
     show.ticks(1);
