@@ -41,6 +41,16 @@ TEST_F(CollectorTest, RestsDuringCalls) {
   EXPECT_GT(memory.used(), before + 2 * kMegabyte);  // all of it is still there
 }
 
+TEST_F(CollectorTest, RestsBetweenSlicesToo) {
+  run("kept = {} for i = 1, 50000 do kept[i] = { i } end");
+  litter(50000);
+  collector->after_tick();  // more to do than a slice can
+  collector->begin_calls();
+  const std::size_t before = memory.used();
+  litter(100000);
+  EXPECT_GT(memory.used(), before + 2 * kMegabyte);
+}
+
 TEST_F(CollectorTest, WorksDuringCallsWhenMemoryIsScarce) {
   run("kept = {} for i = 1, 150000 do kept[i] = { i } end");
   ASSERT_GT(memory.used(), 8 * kMegabyte);
