@@ -76,6 +76,27 @@ TEST(SceneKey, ScriptsGoOnAsTheyDid) {
   EXPECT_TRUE(stage.host.faults.empty());
 }
 
+// what a behaviour's file draws for all of its instances
+TEST(SceneKey, FilesGeneratorsGoBackToo) {
+  Stage stage({}, true);
+  stage.write("behaviors_lua/dice.lua", R"(local dice = rng
+return behavior { doc = "Throws.", step = function(self, dt) print("thrown", dice:uniform(0, 1)) end }
+)");
+  ASSERT_EQ(stage.play(R"(
+sim:add_body("one"):add_behavior("dice", "it", {})
+)",
+                       5),
+            "");
+  Kept kept;
+  kept.take(stage);
+  const std::vector<std::string> first = prints(stage, 10);
+  ASSERT_EQ(first.size(), 10u);
+  EXPECT_NE(first[0], first[1]);
+  stage.tick(7);
+  kept.bring_back(stage);
+  EXPECT_EQ(prints(stage, 10), first);
+}
+
 // a copy in the middle of a garbage collection, of a heap that is compiled and that is not
 TEST(SceneKey, AnyMomentWillDo) {
   Stage stage({}, true);
