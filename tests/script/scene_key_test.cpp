@@ -90,7 +90,7 @@ sim:add_body("one"):add_behavior("dice", "it", {})
   Kept kept;
   kept.take(stage);
   const std::vector<std::string> first = prints(stage, 10);
-  ASSERT_EQ(first.size(), 10u);
+  ASSERT_GE(first.size(), 10u);
   EXPECT_NE(first[0], first[1]);
   stage.tick(7);
   kept.bring_back(stage);
