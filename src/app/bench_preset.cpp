@@ -57,6 +57,27 @@ Json least_and_median(const Samples& samples) {
   return {{"min", rounded(samples.at(0) * 1e3, 2)}, {"median", rounded(samples.at(0.5) * 1e3, 2)}};
 }
 
+struct MorphCost {
+  Samples tick;  // without one
+  double seconds = 0;
+};
+
+// ticks with a morph and without, by turns: they take longer as the arms fall
+MorphCost cost_of_morph(ArmPresets& bench, int count) {
+  MorphCost cost;
+  Samples quiet, morphing;
+  for (int i = 0; i < count; i++) {
+    cost.tick.add(bench.ticks(1).at(0));
+    quiet.add(bench.of_values());
+    bench.send({"/preset/recall", {Arg::of("a"), Arg::of(60.0), Arg::of("linear")}});
+    bench.ticks(1);
+    morphing.add(bench.of_values());
+    bench.send({"/preset/stop", {}});
+  }
+  cost.seconds = morphing.at(0) - quiet.at(0);
+  return cost;
+}
+
 }  // namespace
 
 Json bench_preset(const BenchOptions& options) {
@@ -93,23 +114,13 @@ Json bench_preset(const BenchOptions& options) {
   for (int i = 0; i < count; i++) recall.add(bench.preset("recall", i % 2 == 0 ? "b" : "a"));
 
   bench.preset("recall", "b");
-  // ticks with a morph and without, by turns: they take longer as the arms fall
   bench.send({"/transport/play", {}});
-  Samples tick, quiet, morphing;
-  for (int i = 0; i < count; i++) {
-    tick.add(bench.ticks(1).at(0));
-    quiet.add(bench.of_values());
-    bench.send({"/preset/recall", {Arg::of("a"), Arg::of(60.0), Arg::of("linear")}});
-    bench.ticks(1);
-    morphing.add(bench.of_values());
-    bench.send({"/preset/stop", {}});
-  }
-  const double cost = morphing.at(0) - quiet.at(0);
+  const MorphCost morph = cost_of_morph(bench, count);
   const Preset& preset = *bench.engine().presets().list().front();
   return {{"things", preset.shape->things().size()},
           {"rows", preset.shape->row_count()},
           {"numbers", preset.values.size()},
-          {"tick_ms", least_and_median(tick)},
+          {"tick_ms", least_and_median(morph.tick)},
           {"sudden_store_ms", rounded(sudden_store * 1e3, 2)},
           {"first_store_ms", rounded(first_store * 1e3, 2)},
           {"soon_store_ms", least_and_median(soon)},
@@ -119,8 +130,8 @@ Json bench_preset(const BenchOptions& options) {
           {"parts_ms", least_and_median(parts)},
           {"first_recall_ms", rounded(first_recall * 1e3, 2)},
           {"recall_ms", least_and_median(recall)},
-          {"morph_ms", rounded(cost * 1e3, 2)},
-          {"morph_percent_of_tick", rounded(100 * cost / tick.at(0), 2)}};
+          {"morph_ms", rounded(morph.seconds * 1e3, 2)},
+          {"morph_percent_of_tick", rounded(100 * morph.seconds / morph.tick.at(0), 2)}};
 }
 
 }  // namespace limber

@@ -204,25 +204,25 @@ struct Whip {
 // Bullet turns no body by more than a quarter of pi in a step. Beyond that the inner motion is less, as far as needed;
 // what the whole does stays: 2 kg at (1, 2, 0) m/s, and 3 rad/s times 2·(0.01 + 1·0.1²) kg·m².
 TEST(IslandDirect, WhatWhipsKeepsItsMomentum) {
-  constexpr double h = 1.0 / 60;
+  constexpr double kStep = 1.0 / 60;
   for (const double spin : {40.0, 100.0, 1000.0}) {
     SCOPED_TRACE(spin);
     Whip whip(spin, false);
     EXPECT_NEAR(whip.opening(), 2 * spin, 1e-3);
-    whip.rig.steps(1, h);
+    whip.rig.steps(1, kStep);
     EXPECT_NEAR(glm::length(whip.momentum() - Vec3(2, 4, 0)), 0, 1e-4);
     EXPECT_NEAR(glm::length(whip.spin() - Vec3(0, 0, 0.12)), 0, 1e-4);
-    const double most = kPi / 4 / h;
+    const double most = kPi / 4 / kStep;
     EXPECT_NEAR(whip.opening() / 2, std::min(spin, most), 0.02 * most) << "slower ones as they are";
   }
 }
 
 TEST(IslandDirect, WhatWhipsOnSomethingThatStandsIsCalmedToo) {
-  constexpr double h = 1.0 / 60;
+  constexpr double kStep = 1.0 / 60;
   Whip whip(200, true);
   EXPECT_NEAR(whip.opening(), 200, 1e-3);
-  whip.rig.steps(1, h);
-  EXPECT_NEAR(whip.opening(), kPi / 4 / h, 0.01 * kPi / 4 / h);
+  whip.rig.steps(1, kStep);
+  EXPECT_NEAR(whip.opening(), kPi / 4 / kStep, 0.01 * kPi / 4 / kStep);
 }
 
 // 300 such trees are in `limber bench solver`. Whips that nobody calms part these in the mean by more than half of
