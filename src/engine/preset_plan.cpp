@@ -16,6 +16,7 @@ namespace limber {
 
 namespace {
 
+constexpr int kPatternWork = 8 * PatternBudget::kMessage;  // some patterns over all of a large world
 constexpr std::size_t kThingsAhead = 3;  // things that are fetched while others are looked at: they may lie far off
 
 PresetRow preset_row(const Row& row) {
@@ -223,8 +224,12 @@ class PresetPlan::Things {
     return all()[thing].rows == PresetShape::kNoRows ? nullptr : of_class_[all()[thing].rows];
   }
   /// The thing of a node, or size().
-  std::uint32_t find(NodeId node) const {
-    return static_cast<std::uint32_t>(std::ranges::find(plan_.nodes_, node) - plan_.nodes_.begin());
+  std::uint32_t find(NodeId node) {
+    if (of_slot_.empty()) {
+      of_slot_.assign(store_.view()->slot_count, static_cast<std::uint32_t>(size()));
+      for (std::uint32_t i = 0; i < size(); i++) of_slot_[plan_.nodes_[i].slot] = i;
+    }
+    return of_slot_[node.slot];
   }
 
   // for PathWalk
@@ -259,6 +264,7 @@ class PresetPlan::Things {
   const PresetPlan& plan_;
   std::vector<std::uint32_t> end_;
   std::vector<const Cut*> of_class_;
+  std::vector<std::uint32_t> of_slot_;  // once a node was asked for
 };
 
 class PresetPlan::Choosing {
@@ -294,8 +300,7 @@ class PresetPlan::Choosing {
  private:
   Result<void> choose(const std::string& pattern) {
     if (is_address_pattern(pattern)) {
-      PatternBudget budget;
-      const auto found = PathWalk(things_, budget).match_things(pattern, SIZE_MAX);
+      const auto found = PathWalk(things_, budget_).match_things(pattern, SIZE_MAX);
       if (!found) return Error{found.error()};
       for (const Things::PlaceRows& place : *found) choose(place.node, place.rows);
       return {};
@@ -346,7 +351,8 @@ class PresetPlan::Choosing {
   const PresetPlan& every_;
   Things things_;
   std::uint64_t states_;
-  std::vector<std::uint64_t> chosen_;  // rows by thing
+  PatternBudget budget_{kPatternWork};  // of all patterns together: a message may have thousands
+  std::vector<std::uint64_t> chosen_;   // rows by thing
   bool part_chosen_ = false;
   PresetPlan plan_;
   std::shared_ptr<PresetShape> shape_ = std::make_shared<PresetShape>();

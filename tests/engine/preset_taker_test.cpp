@@ -210,6 +210,11 @@ TEST_F(PresetTakerTest, AChoiceThatReachesNothingIsSaid) {
   EXPECT_EQ(fault("/physics/body/nobody*"), "'/physics/body/nobody*' reaches no property");
   EXPECT_EQ(fault("/physics/bodi").find("there is no 'bodi' in /physics"), 0u) << fault("/physics/bodi");
   EXPECT_EQ(fault("body"), "'body' is no address: it must begin with /");
+  // each is little work, all together are not
+  const auto many =
+      PresetTaker().take(rig.store, "many", {std::vector<std::string>(100000, "//mass"), {}, false, false});
+  ASSERT_FALSE(many.ok());
+  EXPECT_EQ(many.error().find("the pattern '//mass' is too much work"), 0u) << many.error();
 }
 
 // where copies are worth room that is made beside the show, and where the room is too small for what came
