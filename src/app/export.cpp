@@ -103,7 +103,7 @@ Result<std::uint64_t> ticks_of(const std::string& take) {
   auto opened = TakeReader::open(take);
   if (!opened) return Error{opened.error()};
   std::uint64_t ticks = 0;
-  while (const std::optional<TakeTick> tick = (*opened)->next()) ticks += tick->running ? 1 : 0;
+  for (TakeTick tick; (*opened)->next(tick);) ticks += tick.running ? 1 : 0;
   return ticks;
 }
 

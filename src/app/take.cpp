@@ -21,14 +21,14 @@ struct Count {
 
 Count count_all(TakeReader& reader) {
   Count count;
-  while (const std::optional<TakeTick> tick = reader.next()) {
-    if (tick->running) count.ticks++;
-    for (const TakeMessage& message : tick->messages) (message.evaluate ? count.texts : count.messages)++;
-    for (const TakeRun& run : tick->runs) {
+  for (TakeTick tick; reader.next(tick);) {
+    if (tick.running) count.ticks++;
+    for (const TakeMessage& message : tick.messages) (message.evaluate ? count.texts : count.messages)++;
+    for (const TakeRun& run : tick.runs) {
       if (run.good) count.runs[run.kind]++;
     }
-    count.stopped += tick->stopped.size();
-    count.last = tick->tick;
+    count.stopped += tick.stopped.size();
+    count.last = tick.tick;
   }
   return count;
 }

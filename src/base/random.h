@@ -7,24 +7,10 @@
 #include <cstdint>
 #include <string_view>
 
+#include "base/hash.h"
 #include "base/vec.h"
 
 namespace limber {
-
-/// One step of splitmix64 (Steele, Lea, Flood 2014): spreads a seed over all 64 bits.
-constexpr std::uint64_t splitmix64(std::uint64_t& state) {
-  state += 0x9e3779b97f4a7c15u;
-  std::uint64_t z = state;
-  z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9u;
-  z = (z ^ (z >> 27)) * 0x94d049bb133111ebu;
-  return z ^ (z >> 31);
-}
-
-/// 64-bit FNV-1a over bytes; `start` chains several.
-constexpr std::uint64_t hash_bytes(std::string_view bytes, std::uint64_t start = 0xcbf29ce484222325u) {
-  for (const char c : bytes) start = (start ^ static_cast<unsigned char>(c)) * 0x100000001b3u;
-  return start;
-}
 
 /// xoshiro256** (Blackman, Vigna 2018).
 class Random {

@@ -270,15 +270,14 @@ void Engine::replay_messages(Hands& hands) {
   next_command_ = 0;
   refuse_commands();
   answers_taken_ = true;
-  for (const TakeMessage& taken : player_->tick().messages) {
-    Message message = taken.message;
+  for (TakeMessage& taken : player_->messages()) {
     hands.begin(taken.origin);
     if (taken.evaluate) {
       Evaluate wish;
-      wish.text = std::move(message.address);
+      wish.text = std::move(taken.message.address);
       evaluate(wish, taken.origin);
     } else {
-      execute(message, taken.origin);
+      execute(taken.message, taken.origin);
     }
   }
 }

@@ -19,7 +19,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-#include "base/random.h"
+#include "base/hash.h"
 #include "base/text.h"
 #include "base/whole_file.h"
 #include "engine/preset_text.h"

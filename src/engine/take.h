@@ -104,7 +104,7 @@ struct TakeTick {
   std::vector<TakeMessage> messages;
   std::vector<StoppedCall> stopped;
   std::uint64_t tick = 0;              ///< Of the world, behind it.
-  std::uint64_t motion = 0;            ///< World::motion_hash().
+  std::uint64_t motion = 0;            ///< MotionHash::now().
   std::optional<std::uint64_t> state;  ///< Engine::state_hash(): as often as it costs little.
   std::uint32_t first_body = 0;        ///< The bodies take turns.
   std::vector<std::uint16_t> bodies;   ///< Low bits of their motion's hashes.

@@ -79,6 +79,23 @@ bool read_runs(TakeScan& in, std::vector<TakeRun>& runs) {
   return true;
 }
 
+// over those that are in the list, and their memory
+bool read_messages(TakeScan& in, TakeForms& forms, bool there, std::vector<TakeMessage>& messages) {
+  const std::size_t count = there ? in.count() : 0;
+  for (std::size_t i = 0; i < count; i++) {
+    if (i == messages.size()) messages.emplace_back();
+    TakeMessage& message = messages[i];
+    if (!forms.read(in, message)) return false;
+    // no message has an empty address: a text of a console comes as its one argument
+    message.evaluate = message.message.address.empty() && message.message.args.size() == 1;
+    if (!message.evaluate) continue;
+    message.message.address = std::move(message.message.args[0].text);
+    message.message.args.clear();
+  }
+  messages.resize(count);
+  return true;
+}
+
 // which parts of a tick follow: most have none
 constexpr std::uint8_t kRunning = 1, kRuns = 2, kMessages = 4, kStopped = 8, kState = 16, kBodies = 32;
 
@@ -207,21 +224,12 @@ bool tick_runs(std::uint8_t first_byte) { return (first_byte & kRunning) != 0; }
 
 bool read_tick(std::string_view bytes, TakeForms& forms, TakeTick& tick) {
   TakeScan in(bytes);
-  tick = {};
   const std::uint8_t parts = in.byte();
   tick.running = (parts & kRunning) != 0;
+  tick.runs.clear();
   if ((parts & kRuns) != 0 && !read_runs(in, tick.runs)) return false;
-  for (std::size_t left = (parts & kMessages) != 0 ? in.count() : 0; left > 0; left--) {
-    TakeMessage message;
-    if (!forms.read(in, message)) return false;
-    // no message has an empty address: a text of a console comes as its one argument
-    if (message.message.address.empty() && message.message.args.size() == 1) {
-      message.evaluate = true;
-      message.message.address = std::move(message.message.args[0].text);
-      message.message.args.clear();
-    }
-    tick.messages.push_back(std::move(message));
-  }
+  if (!read_messages(in, forms, (parts & kMessages) != 0, tick.messages)) return false;
+  tick.stopped.clear();
   for (std::size_t left = (parts & kStopped) != 0 ? in.count() : 0; left > 0 && !in.bad(); left--) {
     StoppedCall stop;
     stop.number = in.number();
@@ -232,7 +240,10 @@ bool read_tick(std::string_view bytes, TakeForms& forms, TakeTick& tick) {
   }
   tick.tick = in.number();
   tick.motion = in.word(8);
+  tick.state.reset();
   if ((parts & kState) != 0) tick.state = in.word(8);
+  tick.first_body = 0;
+  tick.bodies.clear();
   if ((parts & kBodies) != 0) {
     tick.first_body = static_cast<std::uint32_t>(in.number());
     for (std::size_t left = in.count(); left > 0 && !in.bad(); left--)

@@ -18,7 +18,7 @@ Result<std::unique_ptr<TakePlayer>> TakePlayer::open(const std::string& path, bo
   if (!counted) return Error{counted.error()};
   std::unique_ptr<TakePlayer> player(new TakePlayer(std::move(*reader), current_scripts));
   player->whole_ = (*counted)->count_ticks();
-  player->ahead_ = player->reader_->next();
+  player->ahead_ = player->reader_->next(player->tick_ahead_);
   if (!player->ahead_) {
     const std::string& damage = player->reader_->damage();
     return Error{
@@ -33,8 +33,8 @@ bool TakePlayer::next() {
     over_ = true;
     return false;
   }
-  tick_ = std::move(*ahead_);
-  ahead_ = reader_->next();
+  std::swap(tick_, tick_ahead_);
+  ahead_ = reader_->next(tick_ahead_);
   next_run_ = 0;
   if (tick_.running) found_.ticks++;
   return true;
@@ -50,12 +50,13 @@ const TakeRun* TakePlayer::run_from_outside() const {
   return &tick_.runs[next_run_];
 }
 
-void TakePlayer::find_body(const World& world) {
+void TakePlayer::find_body(World& world) {
   looking_--;
+  const std::span<const std::uint64_t> hashes = world.motion_hash().bodies();
   const auto& all = world.bodies();
   for (std::size_t i = 0; i < tick_.bodies.size(); i++) {
     const std::size_t at = tick_.first_body + i;
-    if (at < all.size() && static_cast<std::uint16_t>(bodies_[at]) == tick_.bodies[i]) continue;
+    if (at < all.size() && static_cast<std::uint16_t>(hashes[at]) == tick_.bodies[i]) continue;
     found_.body = at < all.size() ? all[at]->name() : fmt::format("number {}, which is not there now", at + 1);
     return;
   }
@@ -66,9 +67,8 @@ bool TakePlayer::ends_well(const std::function<std::uint64_t()>& state_hash) con
   return ahead_ || !reader_->end() || state_hash() == reader_->end()->state;
 }
 
-void TakePlayer::compare(const World& world, const CallLedger& calls,
-                         const std::function<std::uint64_t()>& state_hash) {
-  const bool moves_alike = world.motion_hash(bodies_) == tick_.motion && world.tick() == tick_.tick;
+void TakePlayer::compare(World& world, const CallLedger& calls, const std::function<std::uint64_t()>& state_hash) {
+  const bool moves_alike = world.motion_hash().now() == tick_.motion && world.tick() == tick_.tick;
   const bool calls_alike = current_ || (calls.missed() == 0 && next_run_ == tick_.runs.size());
   const bool same =
       moves_alike && calls_alike && (!tick_.state || state_hash() == *tick_.state) && ends_well(state_hash);

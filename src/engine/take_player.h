@@ -5,6 +5,7 @@
 #include <functional>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -33,9 +34,11 @@ class TakePlayer {
   /// Goes on to the next tick; false: there is none, or the runs have parted and nothing more is to be found out.
   bool next();
   /// Whether time goes on in the tick that next() will bring.
-  bool steps_next() const { return ahead_ && ahead_->running; }
+  bool steps_next() const { return ahead_ && tick_ahead_.running; }
   bool over() const { return over_; }
   const TakeTick& tick() const { return tick_; }
+  /// The tick's, for who carries them out and may change them.
+  std::span<TakeMessage> messages() { return tick_.messages; }
   /// The tick's calls that are stopped again; none where the runs may part.
   std::vector<StoppedCall> stopped() const { return current_ ? std::vector<StoppedCall>() : tick_.stopped; }
   /// Ticks replayed so far, and those of the whole take; where time stood still does not count.
@@ -51,24 +54,23 @@ class TakePlayer {
   std::optional<TakeReader::PresetBook> presets(const TakeRun& run) const { return reader_->presets(run.files); }
 
   /// After the tick.
-  void compare(const World& world, const CallLedger& calls, const std::function<std::uint64_t()>& state_hash);
+  void compare(World& world, const CallLedger& calls, const std::function<std::uint64_t()>& state_hash);
   TakeVerdict verdict() const;
 
  private:
   TakePlayer(std::unique_ptr<TakeReader> reader, bool current) : reader_(std::move(reader)), current_(current) {}
-  void find_body(const World& world);
+  void find_body(World& world);
   bool ends_well(const std::function<std::uint64_t()>& state_hash) const;
 
   std::unique_ptr<TakeReader> reader_;
   bool current_;
   bool over_ = false;
-  TakeTick tick_;
-  std::optional<TakeTick> ahead_;
+  TakeTick tick_, tick_ahead_;
+  bool ahead_ = false;  // tick_ahead_ is one
   std::size_t next_run_ = 0;
   std::uint64_t whole_ = 0;
   TakeVerdict found_;
-  std::size_t looking_ = 0;            // ticks in which a body may still be found
-  std::vector<std::uint64_t> bodies_;  // scratch
+  std::size_t looking_ = 0;  // ticks in which a body may still be found
 };
 
 /// "replayed 600 ticks: every hash is the take's", or where it is not.

@@ -111,20 +111,19 @@ std::optional<TakeFrame> TakeReader::frame() {
   return kind;
 }
 
-std::optional<TakeTick> TakeReader::next() {
-  TakeTick tick;
+bool TakeReader::next(TakeTick& tick) {
   while (!end_) {
     const std::uint64_t before = position_;
     const std::optional<TakeFrame> kind = frame();
-    if (!kind) return {};
+    if (!kind) return false;
     if (!take_frame(*kind, tick)) {
       position_ = before;
       damaged("a frame has no meaning");
-      return {};
+      return false;
     }
-    if (*kind == TakeFrame::tick) return tick;
+    if (*kind == TakeFrame::tick) return true;
   }
-  return {};
+  return false;
 }
 
 std::uint64_t TakeReader::count_ticks() {

@@ -21,8 +21,8 @@ class TakeReader {
 
   const TakeHeader& header() const { return header_; }
   const TakeBegin& begin() const { return begin_; }
-  /// The next tick; nothing where the take ends.
-  std::optional<TakeTick> next();
+  /// The next tick takes the place of `tick`, and its memory; false where the take ends.
+  bool next(TakeTick& tick);
   /// Of the ticks that are left, those in which time goes on; it is at the end then. Reads frames' heads alone.
   std::uint64_t count_ticks();
   /// Once next() gave nothing: how it was ended; nothing, where it was cut off.

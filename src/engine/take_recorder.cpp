@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <ctime>
+#include <span>
 #include <utility>
 
 #include <fmt/format.h>
@@ -54,25 +55,26 @@ void TakeRecorder::evaluation(const std::string& text, const Origin& origin) {
   message(console_, origin);
 }
 
-void TakeRecorder::end_tick(bool running, const World& world, const CallLedger& calls,
+void TakeRecorder::end_tick(bool running, World& world, const CallLedger& calls,
                             const std::function<std::uint64_t()>& state_hash, bool whole) {
   if (!running && !whole && tick_.runs.empty() && message_count_ == 0 && calls.stopped().empty()) return;
   tick_.running = running;
   if (running) ticks_++;
   tick_.stopped = calls.stopped();
   tick_.tick = world.tick();
-  tick_.motion = world.motion_hash(bodies_);
+  tick_.motion = world.motion_hash().now();
+  const std::span<const std::uint64_t> bodies = world.motion_hash().bodies();
   tick_.state.reset();
   state_credit_ += kStateBytes;
   if (whole || state_credit_ >= world.store().kept().size() * sizeof(double)) {
     tick_.state = state_hash();
     state_credit_ = 0;
   }
-  if (next_body_ >= bodies_.size()) next_body_ = 0;
-  const std::size_t end = std::min(next_body_ + kBodies, bodies_.size());
+  if (next_body_ >= bodies.size()) next_body_ = 0;
+  const std::size_t end = std::min(next_body_ + kBodies, bodies.size());
   tick_.first_body = static_cast<std::uint32_t>(next_body_);
   tick_.bodies.clear();
-  for (; next_body_ < end; next_body_++) tick_.bodies.push_back(static_cast<std::uint16_t>(bodies_[next_body_]));
+  for (; next_body_ < end; next_body_++) tick_.bodies.push_back(static_cast<std::uint16_t>(bodies[next_body_]));
   payload_.clear();
   append_tick(payload_, tick_, message_count_, messages_);
   frame_.clear();

@@ -37,8 +37,8 @@ class TakeRecorder {
   void evaluation(const std::string& text, const Origin& origin);
   /// Where nothing happened while time stood still, nothing is written. `whole`: the state's hash stands in it.
   /// Allocates nothing once its buffers have grown.
-  void end_tick(bool running, const World& world, const CallLedger& calls,
-                const std::function<std::uint64_t()>& state_hash, bool whole = false);
+  void end_tick(bool running, World& world, const CallLedger& calls, const std::function<std::uint64_t()>& state_hash,
+                bool whole = false);
 
   /// The take ends here, or never was. What writes it may then go on for a while.
   std::unique_ptr<TakeWriter> finish(const TakeEnd& end);
@@ -54,9 +54,8 @@ class TakeRecorder {
   std::uint64_t ticks_ = 0;
   std::size_t state_credit_ = 0;
   std::size_t next_body_ = 0;
-  Message console_;                    // scratch
-  std::vector<std::uint64_t> bodies_;  // scratch
-  std::string payload_, frame_;        // scratch
+  Message console_;              // scratch
+  std::string payload_, frame_;  // scratch
 };
 
 }  // namespace limber

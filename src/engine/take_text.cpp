@@ -7,7 +7,7 @@
 
 #include <fmt/format.h>
 
-#include "base/random.h"
+#include "base/hash.h"
 #include "base/text.h"
 
 namespace limber {
@@ -141,23 +141,22 @@ bool TakeForms::read(TakeScan& in, TakeMessage& message) {
   const std::uint64_t which = in.number();
   if (which < 2) {
     key_ = in.text();
-  } else if (which - 2 < forms_.size()) {
-    key_ = forms_[which - 2];
-  } else {
+  } else if (which - 2 >= forms_.size()) {
     return false;
   }
-  if (key_.size() <= kFormHead) return false;
-  const std::size_t end = key_.find('\0', kFormHead);
+  const std::string& key = which < 2 ? key_ : forms_[which - 2];
+  if (key.size() <= kFormHead) return false;
+  const std::size_t end = key.find('\0', kFormHead);
   if (end == std::string::npos) return false;
-  TakeScan head(key_);
+  TakeScan head(key);
   const std::uint8_t hand = head.byte();
   if (hand > static_cast<std::uint8_t>(Hand::script)) return false;
   message.origin.hand = static_cast<Hand>(hand);
   message.origin.ip = static_cast<std::uint32_t>(head.word(4));
   message.origin.port = static_cast<std::uint16_t>(head.word(2));
-  message.message.address = key_.substr(end + 1);
+  message.message.address.assign(key, end + 1);
   message.message.args.clear();
-  for (std::size_t i = kFormHead; i < end && !in.bad(); i++) message.message.args.push_back(read_arg(in, key_[i]));
+  for (std::size_t i = kFormHead; i < end && !in.bad(); i++) message.message.args.push_back(read_arg(in, key[i]));
   if (which == 1) forms_.push_back(key_);
   return !in.bad();
 }

@@ -15,7 +15,7 @@
 
 #include <fmt/format.h>
 
-#include "base/random.h"
+#include "base/hash.h"
 #include "base/text.h"
 #include "engine/preset_text.h"
 #include "engine/take_text.h"

@@ -7,7 +7,7 @@
 #include <ctime>
 #include <fstream>
 
-#include "base/random.h"
+#include "base/hash.h"
 
 namespace limber {
 

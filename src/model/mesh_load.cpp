@@ -12,7 +12,7 @@
 
 #include <fmt/format.h>
 
-#include "base/random.h"
+#include "base/hash.h"
 #include "base/text.h"
 #include "model/hull.h"
 #include "model/mass_properties.h"

@@ -8,7 +8,7 @@
 
 #include <fmt/format.h>
 
-#include "base/random.h"
+#include "base/hash.h"
 #include "base/text.h"
 #include "model/mesh_load.h"
 #include "model/problems.h"

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "base/id.h"
+#include "base/prefetch.h"
 #include "base/result.h"
 #include "params/store_undo.h"
 #include "params/table.h"
@@ -152,18 +153,9 @@ class Store {
     __builtin_prefetch(&node);
     __builtin_prefetch(&node.children);
   }
-  [[gnu::always_inline]] void fetch_numbers(NodeId id) const {
-    constexpr std::size_t kLine = 64 / sizeof(double);
-    const double* const numbers = kept_.data() + slots_[id.slot].kept;
-    __builtin_prefetch(numbers);
-    __builtin_prefetch(numbers + kLine);
-  }
+  [[gnu::always_inline]] void fetch_numbers(NodeId id) const { prefetch(kept_.data() + slots_[id.slot].kept, 128); }
   [[gnu::always_inline]] void fetch_thing(NodeId id) const {
-    constexpr std::size_t kLine = 64;
-    const auto* const thing = static_cast<const char*>(nodes_[id.slot].thing);
-    if (thing == nullptr) return;
-    __builtin_prefetch(thing);
-    __builtin_prefetch(thing + kLine - 1);
+    if (const void* const thing = nodes_[id.slot].thing; thing != nullptr) prefetch(thing, 64);
   }
   void fetch_effects(NodeId id) const {
     const Node& its = node(id);

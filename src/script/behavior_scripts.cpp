@@ -7,6 +7,7 @@
 
 #include <fmt/format.h>
 
+#include "base/hash.h"
 #include "base/key_bytes.h"
 #include "base/text.h"
 #include "script/context.h"
@@ -101,12 +102,11 @@ void BehaviorScripts::keep_generator(std::int32_t file) {
 void BehaviorScripts::pass_memory(KeyBytes& key) { key.pass_all(generators_, dropped_); }
 
 std::uint64_t BehaviorScripts::hash(std::uint64_t start) const {
+  NumberHash numbers(start);
   for (const FileGenerator& generator : generators_) {
-    if (!generator.now.seeded) continue;
-    const auto& words = generator.now.random.state();
-    start = hash_bytes({reinterpret_cast<const char*>(words.data()), sizeof words}, start);
+    if (generator.now.seeded) numbers.add(generator.now.random.state());
   }
-  return start;
+  return numbers.value();
 }
 
 // what every call into a behaviour's functions goes through

@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include "base/hash.h"
 #include "script/behavior_scripts.h"
 #include "script/guard.h"
 
@@ -58,11 +59,11 @@ Random& ScriptContext::generator() {
 }
 
 std::uint64_t ScriptContext::hash(std::uint64_t start) {
-  const auto& words = generator().state();
-  start = behaviors->hash(hash_bytes({reinterpret_cast<const char*>(words.data()), sizeof words}, start));
-  if (params == nullptr) return start;
-  const double* kept = std::as_const(world->store()).kept_block(params->id());
-  return hash_bytes({reinterpret_cast<const char*>(kept), params->table().kept_width() * sizeof(double)}, start);
+  NumberHash numbers(behaviors->hash(start));
+  numbers.add(generator().state());
+  if (params != nullptr)
+    numbers.add({std::as_const(world->store()).kept_block(params->id()), params->table().kept_width()});
+  return numbers.value();
 }
 
 void ScriptContext::count_call() {

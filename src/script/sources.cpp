@@ -6,7 +6,7 @@
 
 #include <fmt/format.h>
 
-#include "base/random.h"
+#include "base/hash.h"
 
 namespace limber {
 

@@ -7,6 +7,7 @@
 
 #include <fmt/format.h>
 
+#include "base/hash.h"
 #include "base/text.h"
 #include "sim/behavior_group.h"
 #include "sim/behavior_list.h"
@@ -226,18 +227,11 @@ void Behavior::prepare() {
 }
 
 std::uint64_t Behavior::state_hash(std::uint64_t hash) const {
-  const auto mix = [&](const void* bytes, std::size_t size) {
-    hash = hash_bytes({static_cast<const char*>(bytes), size}, hash);
-  };
-  hash = hash_bytes(name(), hash);
-  hash = hash_bytes(type_->name, hash);
-  mix(std::as_const(store()).kept_block(id_), type_->table->kept_width() * sizeof(double));
-  mix(random_.state().data(), sizeof random_.state());
-  for (const Beat& beat : beats_) {
-    const double moment[] = {beat.anchor, beat.interval, beat.count};
-    mix(moment, sizeof moment);
-  }
-  return hash;
+  NumberHash numbers(hash_bytes(type_->name, hash_bytes(name(), hash)));
+  numbers.add({std::as_const(store()).kept_block(id_), type_->table->kept_width()});
+  numbers.add(random_.state());
+  for (const Beat& beat : beats_) numbers.add(beat.anchor, beat.interval, beat.count);
+  return numbers.value();
 }
 
 }  // namespace limber

@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include "base/clock_seconds.h"
+#include "base/hash.h"
 #include "base/log.h"
 #include "base/text.h"
 #include "sim/behavior_list.h"
@@ -223,9 +224,9 @@ void BehaviorGroup::step(double dt) {
 }
 
 std::uint64_t BehaviorGroup::state_hash(std::uint64_t hash) const {
-  const auto* kept = reinterpret_cast<const char*>(std::as_const(world_.store()).kept_block(id_));
-  hash = hash_bytes(name(), hash);
-  return hash_bytes({kept, type_->group_table->kept_width() * sizeof(double)}, hash);
+  NumberHash numbers(hash_bytes(name(), hash));
+  numbers.add({std::as_const(world_.store()).kept_block(id_), type_->group_table->kept_width()});
+  return numbers.value();
 }
 
 }  // namespace limber

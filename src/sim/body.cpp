@@ -3,12 +3,11 @@
 
 #include <algorithm>
 #include <array>
-#include <bit>
 #include <utility>
 
 #include <fmt/format.h>
 
-#include "base/random.h"
+#include "base/hash.h"
 #include "base/text.h"
 #include "sim/behavior_list.h"
 #include "sim/world.h"
@@ -23,6 +22,16 @@ template <class T>
 T* find_by_name(const Store& store, NodeId group, std::string_view name) {
   const NodeId id = store.child(group, name);
   return id.null() ? nullptr : static_cast<T*>(store.thing(id));
+}
+
+void add_vector(NumberHash& numbers, const btVector3& v) { numbers.add(v.x(), v.y(), v.z()); }
+
+void add_motion(NumberHash& numbers, const btRigidBody& rigid) {
+  const btTransform& frame = rigid.getWorldTransform();
+  for (int i = 0; i < 3; i++) add_vector(numbers, frame.getBasis()[i]);
+  add_vector(numbers, frame.getOrigin());
+  add_vector(numbers, rigid.getLinearVelocity());
+  add_vector(numbers, rigid.getAngularVelocity());
 }
 
 }  // namespace
@@ -362,57 +371,33 @@ void Body::say_caps() {
 }
 
 std::uint64_t Body::state_hash(std::uint64_t hash) const {
-  const auto mix = [&](const void* bytes, std::size_t size) {
-    hash = hash_bytes({static_cast<const char*>(bytes), size}, hash);
+  const Store& values = store();
+  NumberHash numbers(hash_bytes(name(), hash) ^ (enabled() ? 1u : 0u));
+  const auto add_kept = [&](NodeId id, const Table& table) {
+    numbers.add({values.kept_block(id), table.kept_width()});
   };
-  const auto mix_kept = [&](NodeId id, const Table& table) {
-    mix(std::as_const(store()).kept_block(id), table.kept_width() * sizeof(double));
+  const auto add_live = [&](NodeId id, const Table& table) {
+    numbers.add({values.live_block(id), table.live_width()});
   };
-  hash = hash_bytes(name(), hash);
-  const bool on = enabled();
-  mix(&on, sizeof on);
-  mix_kept(id_, table());
-  if (parts_.empty()) mix(&planned_, sizeof planned_);
+  add_kept(id_, table());
+  if (parts_.empty()) {
+    std::array<double, 7> pose{};
+    put(pose.data(), planned_.position);
+    put(pose.data() + 3, planned_.rotation);
+    numbers.add(pose);
+  }
   for (const auto& part : parts_) {
-    const btTransform& t = part->rigid().getWorldTransform();
-    for (int i = 0; i < 3; i++) mix(t.getBasis()[i].m_floats, 3 * sizeof(btScalar));
-    mix(t.getOrigin().m_floats, 3 * sizeof(btScalar));
-    mix(part->rigid().getLinearVelocity().m_floats, 3 * sizeof(btScalar));
-    mix(part->rigid().getAngularVelocity().m_floats, 3 * sizeof(btScalar));
-    mix(store().live_block(part->id()), Part::table().live_width() * sizeof(double));
-    mix_kept(part->id(), Part::table());
+    add_motion(numbers, part->rigid());
+    add_live(part->id(), Part::table());
+    add_kept(part->id(), Part::table());
   }
   for (const auto& joint : joints_) {
-    mix(store().live_block(joint->id()), Joint::table().live_width() * sizeof(double));
-    mix_kept(joint->id(), Joint::table());
+    add_live(joint->id(), Joint::table());
+    add_kept(joint->id(), Joint::table());
   }
-  for (const auto& motor : motors_) mix_kept(motor->id(), Motor::table());
+  for (const auto& motor : motors_) add_kept(motor->id(), Motor::table());
+  hash = numbers.value();
   for (const Behavior* behavior : behaviors_) hash = behavior->state_hash(hash);
-  return hash;
-}
-
-std::uint64_t Body::motion_hash() const {
-  // a lane for each axis: a multiplication need not wait for the one before
-  constexpr std::uint64_t kSpread = 0x9fb21c651e98df25u;
-  std::array<std::uint64_t, 3> lanes{1, 2, 3};
-  const auto mix = [&](const btVector3& v) {
-    for (int i = 0; i < 3; i++) {
-      std::uint64_t& lane = lanes[static_cast<std::size_t>(i)];
-      lane = std::rotl((lane ^ std::bit_cast<std::uint64_t>(static_cast<double>(v.m_floats[i]))) * kSpread, 29);
-    }
-  };
-  for (const auto& part : parts_) {
-    const btTransform& t = part->rigid().getWorldTransform();
-    for (int i = 0; i < 3; i++) mix(t.getBasis()[i]);
-    mix(t.getOrigin());
-    mix(part->rigid().getLinearVelocity());
-    mix(part->rigid().getAngularVelocity());
-  }
-  std::uint64_t hash = enabled() ? 1 : 0;
-  for (const std::uint64_t lane : lanes) {
-    hash ^= lane;
-    hash = splitmix64(hash);
-  }
   return hash;
 }
 

@@ -95,8 +95,6 @@ class Body {
   /// The present pose is what health goes back to.
   void take_good_pose();
   std::uint64_t state_hash(std::uint64_t start) const;
-  /// Over the bits of its parts' poses and velocities alone: quick enough for every tick.
-  std::uint64_t motion_hash() const;
 
  private:
   friend class World;

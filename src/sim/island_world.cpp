@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "base/prefetch.h"
 #include "sim/health.h"
 
 namespace limber {
@@ -30,13 +31,6 @@ void accumulate(btAlignedObjectArray<int>& start, btAlignedObjectArray<int>& cur
 void zero(btAlignedObjectArray<int>& a, int size) {
   a.resizeNoInitialize(size);
   for (int i = 0; i < size; ++i) a[i] = 0;
-}
-
-template <class Object>
-void prefetch(const Object& object) {
-  constexpr std::size_t kLine = 64;
-  const auto* bytes = reinterpret_cast<const char*>(&object);
-  for (std::size_t at = 0; at < sizeof(Object); at += kLine) __builtin_prefetch(bytes + at);
 }
 
 void leave_gyroscopic_torque_to_us(btRigidBody& body) {
@@ -88,7 +82,7 @@ void IslandWorld::for_each(const btAlignedObjectArray<Object*>& objects, Work&& 
   const int count = objects.size();
   share_out_places(team.get(), count, [&](int, int first, int end) {
     for (int i = first; i < end; ++i) {
-      if (i + kAhead < count) prefetch(*objects[i + kAhead]);
+      if (i + kAhead < count) prefetch(objects[i + kAhead], sizeof *objects[i]);
       work(i, *objects[i]);
     }
   });

@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include "base/prefetch.h"
 #include "sim/body.h"
 #include "sim/world.h"
 
@@ -232,11 +233,7 @@ void Part::tell() {
 bool Part::reports_contacts() const { return reports_; }
 
 // what Bullet has of a part, all of which its effects look at here and there
-void Part::fetch(const void* thing) {
-  constexpr std::size_t kLine = 64;
-  const auto* const rigid = reinterpret_cast<const char*>(static_cast<const Part*>(thing)->rigid_.get());
-  for (std::size_t at = 0; at < sizeof(btRigidBody); at += kLine) __builtin_prefetch(rigid + at);
-}
+void Part::fetch(const void* thing) { prefetch(static_cast<const Part*>(thing)->rigid_.get(), sizeof(btRigidBody)); }
 
 void Part::effect_mass() {
   static const Row& row = table().at("mass");

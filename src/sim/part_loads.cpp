@@ -1,6 +1,7 @@
 // PartLoads: places, and handing over.
 #include "sim/part_loads.h"
 
+#include "base/prefetch.h"
 #include "sim/part.h"
 
 namespace limber {
@@ -43,16 +44,12 @@ void PartLoads::drop() {
 
 // Many parts are far off by now. What one finds leads to the next: the load, its part, what Bullet has of that.
 void PartLoads::fetch_ahead(std::size_t at) const {
-  constexpr std::size_t kAhead = 5, kLine = 64;
+  constexpr std::size_t kAhead = 5;
   const auto part = [&](std::size_t far) -> const Part* {
     return at + far < waiting_.size() ? loads_[waiting_[at + far]].part : nullptr;
   };
   if (at + 3 * kAhead < waiting_.size()) fetch(waiting_[at + 3 * kAhead]);
-  if (const auto* const far = reinterpret_cast<const char*>(part(2 * kAhead)); far != nullptr) {
-    __builtin_prefetch(far);
-    __builtin_prefetch(far + kLine);
-    __builtin_prefetch(far + sizeof(Part) - 1);
-  }
+  if (const Part* const far = part(2 * kAhead); far != nullptr) prefetch(far, sizeof(Part));
   if (const Part* const near = part(kAhead); near != nullptr) Part::fetch(near);
 }
 

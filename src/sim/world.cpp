@@ -6,8 +6,8 @@
 #include <fmt/format.h>
 
 #include "base/clock_seconds.h"
+#include "base/hash.h"
 #include "base/log.h"
-#include "base/random.h"
 #include "base/text.h"
 #include "sim/health.h"
 
@@ -305,29 +305,16 @@ void World::settle_healed() {
 }
 
 std::uint64_t World::state_hash() const {
-  std::uint64_t hash = hash_bytes("limber");
+  NumberHash numbers(hash_bytes(panic_.on() ? "panic" : "limber"));
   const auto add_kept = [&](NodeId id) {
-    const auto* kept = reinterpret_cast<const char*>(std::as_const(store_).kept_block(id));
-    hash = hash_bytes({kept, store_.table(id).kept_width() * sizeof(double)}, hash);
+    numbers.add({std::as_const(store_).kept_block(id), store_.table(id).kept_width()});
   };
   for (const NodeId id : {id_, visuals_->id(), visuals_->camera().id(), visuals_->look().id()}) add_kept(id);
   for (const auto& shape : shapes_) add_kept(shape->id());
-  const double moment[] = {time(), static_cast<double>(tick_), static_cast<double>(seed())};
-  hash = hash_bytes({reinterpret_cast<const char*>(moment), sizeof moment}, hash);
+  numbers.add(time(), static_cast<double>(tick_), static_cast<double>(seed()));
+  std::uint64_t hash = numbers.value();
   for (const auto& body : bodies_) hash = body->state_hash(hash);
-  if (panic_.on()) hash = hash_bytes("panic", hash);
   return behaviors_->state_hash(hash);
-}
-
-std::uint64_t World::motion_hash(std::vector<std::uint64_t>& bodies) const {
-  std::uint64_t hash = tick_;
-  bodies.clear();
-  for (const auto& body : bodies_) {
-    bodies.push_back(body->motion_hash());
-    hash ^= bodies.back();
-    hash = splitmix64(hash);
-  }
-  return hash;
 }
 
 }  // namespace limber

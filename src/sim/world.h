@@ -15,6 +15,7 @@
 #include "sim/camera_moves.h"
 #include "sim/contacts.h"
 #include "sim/island_world.h"
+#include "sim/motion_hash.h"
 #include "sim/overlay.h"
 #include "sim/panic.h"
 #include "sim/part_solids.h"
@@ -110,8 +111,8 @@ class World {
   std::uint64_t health_events() const { return health_events_; }
   /// Over the bits of all poses, velocities, kept rows; generators are added by their owners.
   std::uint64_t state_hash() const;
-  /// Over time and what moves only. `bodies`: of each body by itself, in their order; reused, so it allocates nothing.
-  std::uint64_t motion_hash(std::vector<std::uint64_t>& bodies) const;
+  /// Whether two runs move alike, for every tick.
+  MotionHash& motion_hash() { return motion_hash_; }
   const TickTimes& times() const { return times_; }
 
   /// One a link, built once a model and shared by all its bodies.
@@ -164,6 +165,7 @@ class World {
   WorldUndo undo_{*this};
   Panic panic_{*this};
   Overlay overlay_{*this};
+  MotionHash motion_hash_{*this};
   TickTimes times_;
   std::uint64_t tick_ = 0;
   std::uint64_t health_events_ = 0;

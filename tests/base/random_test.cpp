@@ -8,22 +8,6 @@
 namespace limber {
 namespace {
 
-// Vigna's splitmix64.c started at 1234567.
-TEST(Random, SplitmixIsTheReference) {
-  std::uint64_t state = 1234567;
-  EXPECT_EQ(splitmix64(state), 6457827717110365317u);
-  EXPECT_EQ(splitmix64(state), 3203168211198807973u);
-  EXPECT_EQ(splitmix64(state), 9817491932198370423u);
-}
-
-// The test vectors of the FNV page.
-TEST(Random, BytesAreHashedByFnv1a) {
-  EXPECT_EQ(hash_bytes(""), 0xcbf29ce484222325u);
-  EXPECT_EQ(hash_bytes("a"), 0xaf63dc4c8601ec8cu);
-  EXPECT_EQ(hash_bytes("foobar"), 0x85944171f73967e8u);
-  EXPECT_EQ(hash_bytes("bar", hash_bytes("foo")), hash_bytes("foobar"));
-}
-
 // Computed apart with xoshiro256starstar.c's steps, its state filled by splitmix64 from seed ^ FNV(name).
 TEST(Random, FirstValuesOfASeedAndAName) {
   Random plain(1);

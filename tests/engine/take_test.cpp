@@ -157,9 +157,9 @@ TEST(Take, CutAtAnyByteItPlaysToItsLastWholeTick) {
     auto reader = TakeReader::of(std::make_unique<std::istringstream>(whole.substr(0, size)), "cut.take");
     std::uint64_t ticks = 0;
     while (reader.ok()) {
-      const std::optional<TakeTick> tick = (*reader)->next();
-      if (!tick) break;
-      ticks = tick->tick;
+      TakeTick tick;
+      if (!(*reader)->next(tick)) break;
+      ticks = tick.tick;
       begun = begun == 0 ? size : begun;
     }
     EXPECT_GE(ticks, last) << size;

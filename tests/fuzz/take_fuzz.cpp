@@ -42,9 +42,9 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     return 0;
   }
   limber::TakeReader& reader = **opened;
-  while (const auto tick = reader.next()) {
-    must_come_back(*tick);
-    for (const limber::TakeRun& run : tick->runs) {
+  for (limber::TakeTick tick; reader.next(tick);) {
+    must_come_back(tick);
+    for (const limber::TakeRun& run : tick.runs) {
       must(run.files == 0 || reader.sources(run.files) != nullptr);
       (void)reader.presets(run.files);
     }
