@@ -68,7 +68,8 @@ class NumberHash {
 
  private:
   static constexpr void mix(std::uint64_t& lane, std::uint64_t word) {
-    lane = std::rotl((lane ^ word) * 0x9fb21c651e98df25u, 29);
+    lane = (lane ^ word) * 0x9fb21c651e98df25u;
+    lane ^= lane >> 32;
   }
   static constexpr void mix(std::uint64_t& lane, double number) { mix(lane, std::bit_cast<std::uint64_t>(number)); }
 

@@ -18,8 +18,8 @@ Result<std::unique_ptr<TakePlayer>> TakePlayer::open(const std::string& path, bo
   if (!counted) return Error{counted.error()};
   std::unique_ptr<TakePlayer> player(new TakePlayer(std::move(*reader), current_scripts));
   player->whole_ = (*counted)->count_ticks();
-  player->ahead_ = player->reader_->next(player->tick_ahead_);
-  if (!player->ahead_) {
+  player->read_ahead();
+  if (!player->ahead()) {
     const std::string& damage = player->reader_->damage();
     return Error{
         fmt::format("{}: {}", printable(path), damage.empty() ? "the take was cut off before its first tick" : damage)};
@@ -27,14 +27,19 @@ Result<std::unique_ptr<TakePlayer>> TakePlayer::open(const std::string& path, bo
   return player;
 }
 
+void TakePlayer::read_ahead() {
+  ahead_at_ = ahead_end_ = 0;
+  while (ahead_end_ < ahead_.size() && reader_->next(ahead_[ahead_end_])) ahead_end_++;
+}
+
 bool TakePlayer::next() {
   const bool known = found_.parted && !current_ && (looking_ == 0 || !found_.body.empty());
-  if (!ahead_ || known) {
+  if (!ahead() || known) {
     over_ = true;
     return false;
   }
-  std::swap(tick_, tick_ahead_);
-  ahead_ = reader_->next(tick_ahead_);
+  std::swap(tick_, ahead_[ahead_at_++]);
+  if (!ahead()) read_ahead();
   next_run_ = 0;
   if (tick_.running) found_.ticks++;
   return true;
@@ -64,7 +69,7 @@ void TakePlayer::find_body(World& world) {
 
 // the take's end has the whole state
 bool TakePlayer::ends_well(const std::function<std::uint64_t()>& state_hash) const {
-  return ahead_ || !reader_->end() || state_hash() == reader_->end()->state;
+  return ahead() || !reader_->end() || state_hash() == reader_->end()->state;
 }
 
 void TakePlayer::compare(World& world, const CallLedger& calls, const std::function<std::uint64_t()>& state_hash) {
@@ -82,8 +87,8 @@ void TakePlayer::compare(World& world, const CallLedger& calls, const std::funct
 
 TakeVerdict TakePlayer::verdict() const {
   TakeVerdict verdict = found_;
-  verdict.damage = reader_->damage();
-  verdict.cut_off = !ahead_ && !reader_->end();
+  if (!ahead()) verdict.damage = reader_->damage();
+  verdict.cut_off = !ahead() && !reader_->end();
   verdict.recorded_by = reader_->header().limber;
   return verdict;
 }

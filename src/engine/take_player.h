@@ -1,6 +1,7 @@
 // TakePlayer: gives an engine what a take holds, tick by tick, and compares what comes of it. [sim]
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <functional>
 #include <memory>
@@ -34,7 +35,7 @@ class TakePlayer {
   /// Goes on to the next tick; false: there is none, or the runs have parted and nothing more is to be found out.
   bool next();
   /// Whether time goes on in the tick that next() will bring.
-  bool steps_next() const { return ahead_ && tick_ahead_.running; }
+  bool steps_next() const { return ahead() && ahead_[ahead_at_].running; }
   bool over() const { return over_; }
   const TakeTick& tick() const { return tick_; }
   /// The tick's, for who carries them out and may change them.
@@ -59,14 +60,19 @@ class TakePlayer {
 
  private:
   TakePlayer(std::unique_ptr<TakeReader> reader, bool current) : reader_(std::move(reader)), current_(current) {}
+  void read_ahead();
+  /// The take has more than the present tick.
+  bool ahead() const { return ahead_at_ < ahead_end_; }
   void find_body(World& world);
   bool ends_well(const std::function<std::uint64_t()>& state_hash) const;
 
   std::unique_ptr<TakeReader> reader_;
   bool current_;
   bool over_ = false;
-  TakeTick tick_, tick_ahead_;
-  bool ahead_ = false;  // tick_ahead_ is one
+  TakeTick tick_;
+  // several are read at once, while what reading them takes is near
+  std::array<TakeTick, 16> ahead_;
+  std::size_t ahead_at_ = 0, ahead_end_ = 0;
   std::size_t next_run_ = 0;
   std::uint64_t whole_ = 0;
   TakeVerdict found_;

@@ -137,27 +137,37 @@ void TakeForms::write(TakeBytes& out, const Message& message, const Origin& orig
   for (std::size_t i = 0; i < message.args.size(); i++) write_arg(out, key_[kFormHead + i], message.args[i]);
 }
 
+std::optional<TakeForms::Form> TakeForms::form_of(std::string_view key) {
+  const std::size_t end = key.size() > kFormHead ? key.find('\0', kFormHead) : key.npos;
+  if (end == key.npos) return {};
+  TakeScan head(key);
+  const std::uint8_t hand = head.byte();
+  if (hand > static_cast<std::uint8_t>(Hand::script)) return {};
+  Form form;
+  form.origin.hand = static_cast<Hand>(hand);
+  form.origin.ip = static_cast<std::uint32_t>(head.word(4));
+  form.origin.port = static_cast<std::uint16_t>(head.word(2));
+  form.types = key.substr(kFormHead, end - kFormHead);
+  form.address = key.substr(end + 1);
+  return form;
+}
+
 bool TakeForms::read(TakeScan& in, TakeMessage& message) {
   const std::uint64_t which = in.number();
+  std::optional<Form> fresh;
   if (which < 2) {
-    key_ = in.text();
+    fresh = form_of(in.text());
+    if (!fresh) return false;
   } else if (which - 2 >= forms_.size()) {
     return false;
   }
-  const std::string& key = which < 2 ? key_ : forms_[which - 2];
-  if (key.size() <= kFormHead) return false;
-  const std::size_t end = key.find('\0', kFormHead);
-  if (end == std::string::npos) return false;
-  TakeScan head(key);
-  const std::uint8_t hand = head.byte();
-  if (hand > static_cast<std::uint8_t>(Hand::script)) return false;
-  message.origin.hand = static_cast<Hand>(hand);
-  message.origin.ip = static_cast<std::uint32_t>(head.word(4));
-  message.origin.port = static_cast<std::uint16_t>(head.word(2));
-  message.message.address.assign(key, end + 1);
-  message.message.args.clear();
-  for (std::size_t i = kFormHead; i < end && !in.bad(); i++) message.message.args.push_back(read_arg(in, key[i]));
-  if (which == 1) forms_.push_back(key_);
+  const Form& form = fresh ? *fresh : forms_[which - 2];
+  message.origin = form.origin;
+  message.message.address = form.address;
+  std::vector<Arg>& args = message.message.args;
+  args.resize(form.types.size());
+  for (std::size_t i = 0; i < args.size() && !in.bad(); i++) args[i] = read_arg(in, form.types[i]);
+  if (which == 1) forms_.push_back(std::move(*fresh));
   return !in.bad();
 }
 

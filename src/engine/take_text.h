@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <unordered_map>
@@ -57,8 +58,13 @@ class TakeForms {
  private:
   static constexpr std::size_t kMost = 65536;             // a flood of ever new ones ends here
   std::unordered_map<std::string, std::uint32_t> known_;  // when it is written
-  std::vector<std::string> forms_;                        // when it is read
-  std::string key_;                                       // scratch
+  struct Form {
+    Origin origin;
+    std::string types, address;
+  };
+  static std::optional<Form> form_of(std::string_view key);
+  std::vector<Form> forms_;  // when it is read
+  std::string key_;          // scratch
 };
 
 /// A frame: kind, length, payload, checksum.

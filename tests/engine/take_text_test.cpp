@@ -111,6 +111,43 @@ TEST(TakeText, TicksComeBack) {
   }
 }
 
+TEST(TakeText, ATickTakesTheWholePlaceOfAnother) {
+  TakeForms written;
+  TakeForms read;
+  const auto bytes = [&](const TakeTick& tick, const std::vector<Message>& messages) {
+    std::string sent;
+    TakeBytes out(sent);
+    for (const Message& m : messages) written.write(out, m, {});
+    std::string text;
+    append_tick(text, tick, messages.size(), sent);
+    return text;
+  };
+  TakeTick full;
+  full.running = true;
+  full.runs = {{TakeRun::Kind::scene, true, false, 3, "other.lua"}};
+  full.stopped = {{12, "a.lua", 7, "stopped"}};
+  full.state = 5;
+  full.first_body = 32;
+  full.bodies = {1, 2};
+  TakeTick tick;
+  // a text of a console has no address
+  ASSERT_TRUE(read_tick(bytes(full, {message("", "sim.time"), message("/a", "x", 2), message("/b")}), read, tick));
+  ASSERT_EQ(tick.messages.size(), 3U);
+  EXPECT_TRUE(tick.messages[0].evaluate);
+  EXPECT_EQ(tick.messages[0].message.address, "sim.time");
+  ASSERT_TRUE(read_tick(bytes({}, {message("/b", 1), message("/a", 1)}), read, tick));
+  ASSERT_EQ(tick.messages.size(), 2U);
+  EXPECT_FALSE(tick.messages[0].evaluate);
+  EXPECT_EQ(tick.messages[0].message.address, "/b");
+  ASSERT_EQ(tick.messages[1].message.args.size(), 1U);
+  EXPECT_TRUE(same_arg(tick.messages[1].message.args[0], Arg::of(1.0)));
+  EXPECT_FALSE(tick.running || tick.state);
+  EXPECT_TRUE(tick.runs.empty() && tick.stopped.empty() && tick.bodies.empty());
+  EXPECT_EQ(tick.first_body, 0U);
+  ASSERT_TRUE(read_tick(bytes({}, {}), read, tick));
+  EXPECT_TRUE(tick.messages.empty());
+}
+
 TEST(TakeText, HeadsOfNewerOnesAreRefusedByVersion) {
   TakeHeader header;
   header.scene = "a \"b\".lua";
