@@ -129,6 +129,11 @@ std::int32_t random_direction(void* c, std::int32_t slot, std::int32_t generatio
 
 double noise(void*, double x, double y, double z) { return gradient_noise(x, y, z); }
 
+double clamp(double x, double lo, double hi) {
+  if (x < lo) return lo;
+  return x > hi ? hi : x;
+}
+
 std::int32_t contact(void* c, std::int32_t index) {
   ScriptContext& context = context_of(c);
   const std::span<const ContactEvent> list = context.world->contacts();

@@ -210,6 +210,30 @@ TEST(Take, DamagedBytesAreFoundAndCostOnlyWhatFollows) {
   EXPECT_GT(found, 60);
 }
 
+TEST(Take, ADamageIsToldOnceTheReplayHasComeThere) {
+  const SmallTake small(40);
+  std::string bytes = take_bytes(small.take);
+  const auto whole = TakePlayer::open(small.take, false);
+  ASSERT_TRUE(whole.ok());
+  std::uint64_t ticks = 0;
+  while ((*whole)->next()) ticks++;
+  EXPECT_EQ((*whole)->verdict().damage, "");
+  EXPECT_FALSE((*whole)->verdict().cut_off);
+  bytes[bytes.size() - 40] = static_cast<char>(bytes[bytes.size() - 40] ^ 1);  // in the last tick
+  const std::string bad = small.folder.path("bad.take");
+  std::ofstream(bad, std::ios::binary) << bytes;
+  const auto player = TakePlayer::open(bad, false);
+  ASSERT_TRUE(player.ok());
+  for (std::uint64_t i = 1; i + 1 < ticks; i++) {
+    EXPECT_EQ((*player)->verdict().damage, "") << i;
+    EXPECT_FALSE((*player)->verdict().cut_off) << i;
+    ASSERT_TRUE((*player)->next()) << i;
+  }
+  ASSERT_TRUE((*player)->next());
+  EXPECT_NE((*player)->verdict().damage, "");
+  EXPECT_FALSE((*player)->next());
+}
+
 TEST(Take, MessagesAboutTakesThatMakeNoSenseAreRefused) {
   const ShowFolder folder;
   folder.write("scripts/small.lua", kSmallScene);

@@ -107,7 +107,7 @@ TEST(Errors, DeepRecursionIsAnError) {
 }
 
 TEST(Errors, FaultsInsideThePreludeStandAtTheScript) {
-  EXPECT_EQ(error_of("math.clamp(nil, 1, 2)"), "scripts/scene.lua:1: attempt to compare nil with number");
+  EXPECT_EQ(error_of("math.clamp(nil, 1, 2)"), "scripts/scene.lua:1: math.clamp takes three numbers: what, from, to");
   EXPECT_EQ(error_of("table.sort({ 1, {} })"), "scripts/scene.lua:1: attempt to compare table with number");
 }
 

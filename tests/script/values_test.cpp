@@ -93,6 +93,8 @@ TEST(Values, MathAndColours) {
       {"math.clamp(5, 0, 1)", "1"},
       {"math.clamp(-5, 0, 1)", "0"},
       {"math.clamp(0.5, 0, 1)", "0.5"},
+      {"math.clamp(7, -math.huge, math.huge)", "7"},
+      {"math.clamp(0, 3, 2)", "3"},
       {"math.lerp(10, 20, 0.25)", "12.5"},
       {"math.map(5, 0, 10, 100, 200)", "150"},
       {"rgb(1, 0, 0)", "vec3(0, 1, 1)"},
@@ -102,6 +104,17 @@ TEST(Values, MathAndColours) {
       {"rgb(1, 0, 1)", "vec3(0.83333333333333, 1, 1)"},
       {"math.randomseed", "nil"},
   });
+}
+
+// A loop is compiled while it runs: what is within stays as it is to the bit, sign of zero and all.
+TEST(Values, WhatIsClampedIsTheSameCompiled) {
+  EXPECT_EQ(value_of("(function() local seen = {} for i = 1, 3000 do "
+                     "for _, x in ipairs { -1 / math.huge, 1 / math.huge } do "
+                     "for _, lo in ipairs { -1, -1 / math.huge, 1 / math.huge } do "
+                     "seen[i] = (seen[i] or '') .. 1 / math.clamp(x, lo, 1) .. 1 / math.clamp(x, -1, -lo) "
+                     "end end end for i = 2, #seen do if seen[i] ~= seen[1] then return i .. seen[i] end end "
+                     "return seen[1] end)()"),
+            "-inf-inf-inf-inf-inf-infinfinfinfinfinfinf");
 }
 
 TEST(Values, NoiseIsPerlins) {

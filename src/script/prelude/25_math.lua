@@ -7,9 +7,12 @@ local extra = {}
 P.math_extra = extra
 
 function extra.clamp(x, lo, hi)
-  if x < lo then return lo end
-  if x > hi then return hi end
-  return x
+  if type(x) ~= "number" or type(lo) ~= "number" or type(hi) ~= "number" then
+    fail("math.clamp takes three numbers: what, from, to")
+  end
+  -- Not compared here: each outcome would become a way of its own through the loop around it, and a compiler that has
+  -- too many leaves the loop. Nor by math.min and max, whose -0 is another one compiled.
+  return api.clamp(x, lo, hi)
 end
 function extra.lerp(a, b, t) return a + (b - a) * t end
 function extra.map(x, a, b, c, d) return c + (x - a) * (d - c) / (b - a) end
