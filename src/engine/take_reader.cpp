@@ -112,16 +112,15 @@ std::optional<TakeFrame> TakeReader::frame() {
 }
 
 bool TakeReader::next(TakeTick& tick) {
-  while (!end_) {
+  while (!over_) {
     const std::uint64_t before = position_;
     const std::optional<TakeFrame> kind = frame();
-    if (!kind) return false;
-    if (!take_frame(*kind, tick)) {
+    if (kind && !take_frame(*kind, tick)) {
       position_ = before;
       damaged("a frame has no meaning");
-      return false;
     }
-    if (*kind == TakeFrame::tick) return true;
+    over_ = !kind || end_ || !damage_.empty();
+    if (!over_ && *kind == TakeFrame::tick) return true;
   }
   return false;
 }

@@ -21,7 +21,7 @@ class TakeReader {
 
   const TakeHeader& header() const { return header_; }
   const TakeBegin& begin() const { return begin_; }
-  /// The next tick takes the place of `tick`, and its memory; false where the take ends.
+  /// The next tick takes the place of `tick`, and its memory; false from where the take ends.
   bool next(TakeTick& tick);
   /// Of the ticks that are left, those in which time goes on; it is at the end then. Reads frames' heads alone.
   std::uint64_t count_ticks();
@@ -71,6 +71,7 @@ class TakeReader {
   std::vector<TakeFileList> lists_;
   std::vector<std::shared_ptr<const Sources>> sources_;
   std::map<std::string, std::shared_ptr<ModelLibrary>> libraries_;  // by all that is in models and meshes
+  bool over_ = false;                                               // next() has come to the end, whichever
   std::optional<TakeEnd> end_;
   std::string damage_;
 };

@@ -158,7 +158,10 @@ TEST(Take, CutAtAnyByteItPlaysToItsLastWholeTick) {
     std::uint64_t ticks = 0;
     while (reader.ok()) {
       TakeTick tick;
-      if (!(*reader)->next(tick)) break;
+      if (!(*reader)->next(tick)) {
+        EXPECT_FALSE((*reader)->next(tick)) << "nor when it is asked again";
+        break;
+      }
       ticks = tick.tick;
       begun = begun == 0 ? size : begun;
     }
