@@ -97,7 +97,7 @@ TEST(Random, DirectionsAreUnitVectorsSpreadOverTheSphere) {
     ASSERT_NEAR(glm::length(d), 1, 1e-12);
     mean += d / static_cast<double>(n);
     square += d * d / static_cast<double>(n);
-    octants[static_cast<std::size_t>((d.x > 0 ? 1 : 0) + (d.y > 0 ? 2 : 0) + (d.z > 0 ? 4 : 0))]++;
+    octants[(d.x > 0 ? 1U : 0U) + (d.y > 0 ? 2U : 0U) + (d.z > 0 ? 4U : 0U)]++;
   }
   // each coordinate is uniform in -1 .. 1: mean 0, mean square 1/3; four standard errors
   for (int i = 0; i < 3; i++) {
