@@ -134,6 +134,7 @@ const std::vector<BenchScene>& bench_scenes() {
       {"flock-10k", "10 000 such bodies", &run_flock<10000>},
       {"flock-100k", "100 000 such bodies", &run_flock<100000>},
       {"lua-twin", "each built-in behaviour and its twin in Lua, 10 000 parts each", &bench_lua_twin},
+      {"lua-garbage", "behaviours in Lua that leave garbage: what the collector adds to ticks", &bench_lua_garbage},
       {"lua-many", "1000 instances of a small behaviour in Lua", &bench_lua_many},
       {"spawn", "load urdf/arm17.urdf and make 1000 copies", &bench_spawn},
       {"reload", "a scene saved while it plays: how soon the new one is in force, and what its ticks feel of it",

@@ -157,6 +157,29 @@ Json measure(const Twin& twin, int parts, int ticks) {
           {"faults", show.engine().faults()}};
 }
 
+// what the collector adds to ticks of a scene with so many instances
+Json collected(const char* behavior, int instances, int ticks) {
+  const std::string scene =
+      std::string(kClouds) + fmt::format(
+                                 "sim.history = 0\n"
+                                 "cloud('b', {}, false, vec3())\n"
+                                 "for _, body in ipairs(sim.bodies) do body:add_behavior('small', 'it') end\n",
+                                 instances);
+  BenchShow show(scene, behavior);
+  if (!show.started()) return {{"error", show.started().error()}};
+  Samples slices;
+  for (int i = 0; i < ticks; i++) {
+    show.engine().tick();
+    // less is a look at how much memory there is
+    if (const double seconds = show.engine().times().collector; seconds > 20e-6) slices.add(seconds);
+  }
+  if (slices.empty()) return {{"slices", 0}};
+  return {{"slices", slices.count()},
+          {"median_us", Samples::in_microseconds(slices.at(0.5))},
+          {"longest_us", Samples::in_microseconds(slices.at(1))},
+          {"faults", show.engine().faults()}};
+}
+
 }  // namespace
 
 nlohmann::ordered_json bench_lua_twin(const BenchOptions& options) {
@@ -165,6 +188,23 @@ nlohmann::ordered_json bench_lua_twin(const BenchOptions& options) {
   Json figures = {{"parts", kParts}, {"ticks", ticks}};
   for (const Twin& twin : kTwins) figures[std::string(twin.type)] = measure(twin, kParts, ticks);
   return figures;
+}
+
+nlohmann::ordered_json bench_lua_garbage(const BenchOptions& options) {
+  const int ticks = options.ticks > 0 ? options.ticks : 2000;
+  // a table, a vector and a text a tick, which take the place of the last ones
+  constexpr const char* kLast =
+      "return behavior { step = function(self)\n"
+      "self.state.last = { at = self.parts[1].center, name = 'at ' .. sim.tick } end }\n";
+  // or of those a second ago: a long table that changes is looked at once more, in one go
+  constexpr const char* kPast =
+      "return behavior { start = function(self) self.state.past, self.state.at = {}, 0 end,\n"
+      "step = function(self) self.state.at = self.state.at % 60 + 1\n"
+      "self.state.past[self.state.at] = { at = self.parts[1].center, name = 'at ' .. sim.tick } end }\n";
+  return {{"ticks", ticks},
+          {"1000 instances", collected(kLast, 1000, ticks)},
+          {"100 with a past of a second", collected(kPast, 100, ticks)},
+          {"1000 with such a past", collected(kPast, 1000, ticks)}};
 }
 
 nlohmann::ordered_json bench_lua_many(const BenchOptions& options) {

@@ -41,6 +41,7 @@ class Samples {
  public:
   void add(double seconds) { all_.push_back(seconds); }
   bool empty() const { return all_.empty(); }
+  std::size_t count() const { return all_.size(); }
   /// 0: the least, 0.5: the median, 0.99: what one in a hundred exceeds.
   double at(double part) const {
     std::vector<double> sorted = all_;

@@ -32,6 +32,12 @@ void Collector::pass_memory(KeyBytes& key) { key.pass_all(used_after_cycle_, cyc
 
 void Collector::begin_run() { lua_gc(state_, LUA_GCRESTART, 0); }
 
+// what a run has made stays, most of it: it is no garbage that came between ticks
+void Collector::end_run() {
+  used_after_cycle_ = std::max(used_after_cycle_, memory_.used());
+  rest();
+}
+
 void Collector::begin_calls() {
   if (memory_.used() > memory_.cap() / 2) lua_gc(state_, LUA_GCRESTART, 0);
 }

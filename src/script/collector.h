@@ -16,7 +16,7 @@ class Collector {
 
   /// Before a scene's top level, and after it: the collector works by itself meanwhile.
   void begin_run();
-  void end_run() { rest(); }
+  void end_run();
   /// Before a tick's calls. It rests in them, unless memory is scarce.
   void begin_calls();
   /// After the tick: about 100 µs at most when there is enough to collect; longer when scripts make more than that.

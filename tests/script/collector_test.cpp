@@ -60,6 +60,22 @@ TEST_F(CollectorTest, WorksDuringCallsWhenMemoryIsScarce) {
   EXPECT_LT(memory.used(), before + 16 * kMegabyte);
 }
 
+TEST_F(CollectorTest, WhatARunMadeIsNoGarbageOfTheTicks) {
+  collector->begin_run();
+  run("kept = {} for i = 1, 100000 do kept[i] = { i } end");
+  collector->end_run();
+  const std::size_t made = memory.used();
+  ASSERT_GT(made, 4 * kMegabyte);
+  std::size_t before = 0;
+  for (int tick = 0; memory.used() < made + kMegabyte; tick++) {
+    collector->begin_calls();
+    litter(1000);
+    before = memory.used();
+    collector->after_tick();
+    EXPECT_EQ(memory.used(), before) << "tick " << tick << ": nothing to collect yet";
+  }
+}
+
 TEST_F(CollectorTest, KeepsUpWithWhatTicksLeave) {
   for (int tick = 0; tick < 3000; tick++) {
     collector->begin_calls();
