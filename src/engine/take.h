@@ -19,7 +19,8 @@
 
 namespace limber {
 
-inline constexpr int kTakeVersion = 1;
+/// 2: the hashes are made otherwise; those of 1 can be played, not compared.
+inline constexpr int kTakeVersion = 2;
 /// The file's first line; the second is JSON that people can read. Frames follow.
 inline constexpr const char* kTakeHead = "limber take ";
 

@@ -73,6 +73,8 @@ bool TakePlayer::ends_well(const std::function<std::uint64_t()>& state_hash) con
 }
 
 void TakePlayer::compare(World& world, const CallLedger& calls, const std::function<std::uint64_t()>& state_hash) {
+  found_.compared = reader_->header().version == kTakeVersion;
+  if (!found_.compared) return;
   const bool moves_alike = world.motion_hash().now() == tick_.motion && world.tick() == tick_.tick;
   const bool calls_alike = current_ || (calls.missed() == 0 && next_run_ == tick_.runs.size());
   const bool same =
@@ -95,7 +97,9 @@ TakeVerdict TakePlayer::verdict() const {
 
 std::string text_of(const TakeVerdict& v) {
   std::string text = fmt::format("replayed {} ticks: ", v.ticks);
-  if (!v.parted) {
+  if (!v.compared) {
+    text += fmt::format("nothing was compared, limber {} recorded it with other hashes", printable(v.recorded_by));
+  } else if (!v.parted) {
     text += "every hash is the take's";
   } else {
     text += fmt::format("the runs part at tick {}; ", *v.parted);

@@ -22,6 +22,7 @@ struct TakeVerdict {
   std::string body;                     ///< The first body that moves otherwise, where one was found.
   std::string damage;                   ///< What is wrong in the file behind the last tick.
   bool cut_off = false;                 ///< The take has no end.
+  bool compared = true;                 ///< False: it is of a version with other hashes.
   std::string recorded_by;              ///< Which Limber.
 };
 

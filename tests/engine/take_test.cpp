@@ -213,6 +213,19 @@ TEST(Take, DamagedBytesAreFoundAndCostOnlyWhatFollows) {
   EXPECT_GT(found, 60);
 }
 
+TEST(Take, OneWithTheHashesOfBeforeIsPlayedAndNotCompared) {
+  log_to_stderr(false);
+  const Replayed played = replay_take(LIMBER_SOURCE_DIR "/tests/fuzz/corpus/take/whole.take");
+  ASSERT_EQ(played.error, "");
+  EXPECT_GT(played.verdict.ticks, 5U);
+  EXPECT_FALSE(played.verdict.parted.has_value());
+  EXPECT_FALSE(played.verdict.compared);
+  EXPECT_NE(text_of(played.verdict).find(" ticks: nothing was compared, limber 0.1.0 ("), std::string::npos)
+      << text_of(played.verdict);
+  const SmallTake small(3);
+  EXPECT_TRUE(replay_take(small.take).verdict.compared);
+}
+
 TEST(Take, ADamageIsToldOnceTheReplayHasComeThere) {
   const SmallTake small(40);
   std::string bytes = take_bytes(small.take);
