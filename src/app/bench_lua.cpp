@@ -157,15 +157,17 @@ Json measure(const Twin& twin, int parts, int ticks) {
           {"faults", show.engine().faults()}};
 }
 
+// so many bodies of one part, each with the behaviour `small`
+std::string many_scene(int instances) {
+  return std::string(kClouds) + fmt::format(
+                                    "cloud('b', {}, false, vec3())\n"
+                                    "for _, body in ipairs(sim.bodies) do body:add_behavior('small', 'it') end\n",
+                                    instances);
+}
+
 // what the collector adds to ticks of a scene with so many instances
 Json collected(const char* behavior, int instances, int ticks) {
-  const std::string scene =
-      std::string(kClouds) + fmt::format(
-                                 "sim.history = 0\n"
-                                 "cloud('b', {}, false, vec3())\n"
-                                 "for _, body in ipairs(sim.bodies) do body:add_behavior('small', 'it') end\n",
-                                 instances);
-  BenchShow show(scene, behavior);
+  BenchShow show("sim.history = 0\n" + many_scene(instances), behavior);
   if (!show.started()) return {{"error", show.started().error()}};
   Samples slices;
   for (int i = 0; i < ticks; i++) {
@@ -213,12 +215,7 @@ nlohmann::ordered_json bench_lua_many(const BenchOptions& options) {
   const std::string small =
       "return behavior { params = { { 'lift', 0.01, unit = 'N' } },\n"
       "step = function(self) self.parts[1]:apply_force(vec3(0, 0, self.lift)) end }\n";
-  const std::string scene =
-      std::string(kClouds) + fmt::format(
-                                 "cloud('b', {}, false, vec3())\n"
-                                 "for _, body in ipairs(sim.bodies) do body:add_behavior('small', 'it') end\n",
-                                 kInstances);
-  BenchShow show(scene, small);
+  BenchShow show(many_scene(kInstances), small);
   if (!show.started()) return {{"error", show.started().error()}};
   Samples behaviors;
   for (int i = -20; i < ticks; i++) {

@@ -73,8 +73,7 @@ bool TakePlayer::ends_well(const std::function<std::uint64_t()>& state_hash) con
 }
 
 void TakePlayer::compare(World& world, const CallLedger& calls, const std::function<std::uint64_t()>& state_hash) {
-  found_.compared = reader_->header().version == kTakeVersion;
-  if (!found_.compared) return;
+  if (!comparable()) return;
   const bool moves_alike = world.motion_hash().now() == tick_.motion && world.tick() == tick_.tick;
   const bool calls_alike = current_ || (calls.missed() == 0 && next_run_ == tick_.runs.size());
   const bool same =
@@ -91,6 +90,7 @@ TakeVerdict TakePlayer::verdict() const {
   TakeVerdict verdict = found_;
   if (!ahead()) verdict.damage = reader_->damage();
   verdict.cut_off = !ahead() && !reader_->end();
+  verdict.compared = comparable();
   verdict.recorded_by = reader_->header().limber;
   return verdict;
 }

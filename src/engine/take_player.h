@@ -64,6 +64,8 @@ class TakePlayer {
   void read_ahead();
   /// The take has more than the present tick.
   bool ahead() const { return ahead_at_ < ahead_end_; }
+  /// Its hashes are made as ours.
+  bool comparable() const { return reader_->header().version == kTakeVersion; }
   void find_body(World& world);
   bool ends_well(const std::function<std::uint64_t()>& state_hash) const;
 

@@ -34,7 +34,7 @@ void Collector::begin_run() { lua_gc(state_, LUA_GCRESTART, 0); }
 
 // what a run has made stays, most of it: it is no garbage that came between ticks
 void Collector::end_run() {
-  used_after_cycle_ = std::max(used_after_cycle_, memory_.used());
+  used_after_cycle_ = memory_.used();
   rest();
 }
 

@@ -19,7 +19,8 @@ class Collector {
   void end_run();
   /// Before a tick's calls. It rests in them, unless memory is scarce.
   void begin_calls();
-  /// After the tick: about 100 µs at most when there is enough to collect; longer when scripts make more than that.
+  /// After the tick: about 100 µs at most when there is enough to collect; longer when scripts make more than that, and
+  /// at the end of a cycle when very much is written to all the time, which is looked at again in one go.
   void after_tick();
   /// After a script was stopped for memory: whole cycles, in slices too.
   void collect_all() { cycles_ = 2; }
