@@ -16,6 +16,8 @@ constexpr int kRounds = 8;
 constexpr double kMostTurn = 0.5;
 /// So often what whips when all is solved is calmed, and all is solved again.
 constexpr int kCalmings = 4;
+/// So often bends are corrected.
+constexpr int kBends = 4;
 /// Fastest bend, m/s: what flies apart is not pulled together in one step.
 constexpr double kFastestBend = 20;
 /// Partings below this are left alone, m.
@@ -162,7 +164,7 @@ void IslandDirect::ask_for_bend(Link& link, double h) {
 }
 
 // How far the two sides of a joint will part in this step, beyond what its rows know, along the parent-side axes, m.
-Vec3 IslandDirect::bend_of(const Link& link, const IslandPools& pools, double h) const {
+Vec3 IslandDirect::bend_of(const Link& link, const IslandPools& pools, double h) {
   const JointConstraint& joint = *link.joint;
   const auto moving = [&](int body) {
     const int node = node_of_[at(body)];
@@ -170,7 +172,10 @@ Vec3 IslandDirect::bend_of(const Link& link, const IslandPools& pools, double h)
   };
   const Spatial a = moving(link.body_a);
   const Spatial b = moving(link.body_b);
-  if (glm::length(a.angular) * h > kBulletsTurn || glm::length(b.angular) * h > kBulletsTurn) return link.bent;
+  if (glm::length(a.angular) * h > kBulletsTurn || glm::length(b.angular) * h > kBulletsTurn) {
+    whips_ = true;
+    return link.bent;
+  }
   const Vec3 arm_a = from_bt(joint.arm_a());
   const Vec3 arm_b = from_bt(joint.arm_b());
   Vec3 gap(0);
@@ -305,10 +310,16 @@ bool IslandDirect::solve(IslandPools pools, const btContactSolverInfo& info) {
   if (solved) solved = settle_all(pools, h);
   for (int pass = 0; pass < kCalmings && solved && calm_whips(pools, h, Whips::after); ++pass)
     solved = build_forest(pools) && settle_all(pools, h);
+  bool bending = false;
+  whips_ = false;
   if (solved) {
     unbent_work_.clear();
     for (const Tree& t : trees_) unbent_work_.push_back(passive(t) ? work_of_locks(t, pools) : 0);
-    for (int pass = 0; pass < 4 && solved && bend_locks(pools, h); ++pass) solved = settle();
+    bending = true;
+    for (int pass = 0; pass < kBends && solved && bending; ++pass) {
+      bending = bend_locks(pools, h);
+      if (bending) solved = settle();
+    }
     for (int pass = 0; pass < kEasings && solved && ease_bends(pools, h); ++pass) solved = settle();
   }
   if (!solved || contradicts(system_, static_cast<int>(body_of_.size()), pools)) {
@@ -331,6 +342,7 @@ bool IslandDirect::solve(IslandPools pools, const btContactSolverInfo& info) {
   write(pools);
   push_apart(pools, info);
   if (measured_) take_residuals(pools);
+  if (bending || whips_) close_joints(pools, info);
   return true;
 }
 

@@ -96,6 +96,10 @@ class IslandDirect {
   bool grow(int body, int parent, int link, const IslandPools& pools);
   bool add_node(int body, int parent, int link, const IslandPools& pools);
   Spatial velocity(int body, const IslandPools& pools) const;
+  static SpatialInertia inertia_of(const btRigidBody& body);
+  static void float_free(TreeNode& node);
+  /// The node hangs on the joint, as parts stand now; forward: the joint's child is the node. False: a singular pose.
+  static bool hang(TreeNode& node, const JointConstraint& joint, bool forward);
 
   void collect_contacts(IslandPools& pools);
   void add_contact(btSolverConstraint& row, int normal, double most);
@@ -121,13 +125,19 @@ class IslandDirect {
   bool limit_turns(const IslandPools& pools, double h);
   bool bend_locks(const IslandPools& pools, double h);
   void ask_for_bend(Link& link, double h);
-  Vec3 bend_of(const Link& link, const IslandPools& pools, double h) const;
+  Vec3 bend_of(const Link& link, const IslandPools& pools, double h);
   double work_of_locks(const Tree& tree, const IslandPools& pools) const;
   bool driven(const Tree& tree) const;
   bool passive(const Tree& tree) const;
   JointConstraint& first_joint(const Tree& tree) const;
   bool ease_bends(const IslandPools& pools, double h);
   void push_apart(IslandPools& pools, const btContactSolverInfo& info);
+  void close_joints(IslandPools& pools, const btContactSolverInfo& info);
+  void foresee(const IslandPools& pools, const btContactSolverInfo& info);
+  void place(const IslandPools& pools);
+  double gape();
+  bool build_poses(const IslandPools& pools);
+  void go_there(IslandPools& pools, const btContactSolverInfo& info) const;
   bool crowded(const IslandPools& pools) const;
   bool finite() const;
   void write(IslandPools& pools);
@@ -135,6 +145,8 @@ class IslandDirect {
 
   /// What Bullet turns a body by in a step at most, rad, however fast it is (ANGULAR_MOTION_THRESHOLD).
   static constexpr double kBulletsTurn = kPi / 4;
+  /// A push that turns a body by more than this, rad, makes its joints gape.
+  static constexpr double kFarthestPush = 0.1;
   /// More contact and friction rows than this go to the plain solver: the dense response would cost more than it gains.
   static constexpr int kMostContactRows = 360;
   /// What outer rows may miss, m/s and rad/s, when they count as solved; and when they still will do.
@@ -165,6 +177,10 @@ class IslandDirect {
   std::size_t fixed_outer_ = 0;      // contacts and loops; behind them axes that were given up
   std::vector<double> unbent_work_;  // tree: of its locks, unbent, J
   std::uint64_t box_factors_ = 0;    // that box_ has the responses of
+  bool whips_ = false;               // some body turns by more than bends know
+  TreeRows poses_;                   // the trees where the step will end
+  std::vector<Pose> ends_;           // node: there
+  std::vector<std::array<double, 6>> goals_;  // link: where its locked axes are to be then
   bool measured_ = false;
   DirectCounts counts_;
   DirectResiduals residuals_;

@@ -80,6 +80,24 @@ TreeRow::Mark mark_of(const JointConstraint::Row& row) {
 
 }  // namespace
 
+SpatialInertia IslandDirect::inertia_of(const btRigidBody& body) {
+  return {1 / static_cast<double>(body.getInvMass()), world_inertia(body)};
+}
+
+void IslandDirect::float_free(TreeNode& node) {
+  for (int k = 0; k < 3; ++k) {
+    node.axis[at(k)].linear[k] = 1;
+    node.axis[at(3 + k)].angular[k] = 1;
+  }
+}
+
+bool IslandDirect::hang(TreeNode& node, const JointConstraint& joint, bool forward) {
+  const Vec3 arm_a = from_bt(joint.arm_a());
+  const Vec3 arm_b = from_bt(joint.arm_b());
+  node.shift = forward ? arm_a - arm_b : arm_b - arm_a;
+  return motion_axes(joint, forward ? arm_b : arm_a, forward ? 1 : -1, node.axis);
+}
+
 int IslandDirect::root_of(int body) {
   while (group_[at(body)] != body) body = group_[at(body)] = group_[at(group_[at(body)])];
   return body;
@@ -171,24 +189,19 @@ bool IslandDirect::add_node(int body, int parent, int link, const IslandPools& p
   body_of_.push_back(body);
   link_of_.push_back(link);
   tree_of_.push_back(static_cast<int>(trees_.size()) - 1);
-  n.inertia = SpatialInertia(1 / static_cast<double>(rigid.getInvMass()), world_inertia(rigid));
+  n.inertia = inertia_of(rigid);
   std::array<double, 6> rates{};
   const Spatial done{from_bt(solver_body.m_deltaLinearVelocity), from_bt(solver_body.m_deltaAngularVelocity)};
   if (link < 0) {
-    for (int k = 0; k < 3; ++k) {
-      n.axis[at(k)].linear[k] = 1;
-      n.axis[at(3 + k)].angular[k] = 1;
-    }
+    float_free(n);
     system_.end_node(rates, {});
   } else {
     Link& l = links_[at(link)];
     JointConstraint& joint = *l.joint;
     l.node = system_.trees.size() - 1;
-    const bool forward = l.body_b == body;
+    if (!hang(n, joint, l.body_b == body)) return false;
     const Vec3 arm_a = from_bt(joint.arm_a());
     const Vec3 arm_b = from_bt(joint.arm_b());
-    n.shift = forward ? arm_a - arm_b : arm_b - arm_a;
-    if (!motion_axes(joint, forward ? arm_b : arm_a, forward ? 1 : -1, n.axis)) return false;
     // rates as they are now, what contacts start from included
     const auto moving = [&](int id) {
       const btSolverBody& b = pools.bodies[id];
