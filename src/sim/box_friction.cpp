@@ -138,4 +138,15 @@ bool BoxSolver::settle_friction(double tolerance) {
   return true;
 }
 
+// Where no round agreed with its normals, a solution may be found on the path from the last one, or that stays.
+void BoxSolver::agree_at_last(double tolerance) {
+  for (int i = 0; i < size(); ++i) settled_[nth(i)] = row(i).impulse;
+  const double settled_missed = least_missed_;
+  frozen_ = false;
+  least_missed_ = 1e300;
+  if (follow_path(tolerance)) return;
+  for (int i = 0; i < size(); ++i) put(i, settled_[nth(i)]);
+  least_missed_ = settled_missed;
+}
+
 }  // namespace limber

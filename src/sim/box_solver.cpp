@@ -50,7 +50,11 @@ void BoxSolver::bound(Row& row) const {
 void BoxSolver::apply(int i, double change) {
   if (change == 0) return;
   row(i).impulse += change;
-  subtract_scaled(left_.data(), &response(i, 0), change, stride_);
+  respond(left_, i, change);
+}
+
+void BoxSolver::respond(std::vector<double>& to, int i, double change) const {
+  subtract_scaled(to.data(), &response_[nth(i * stride_)], change, stride_);
 }
 
 void BoxSolver::restart() {
@@ -168,11 +172,9 @@ bool BoxSolver::decompose() {
   return true;
 }
 
-// What free rows still miss is given to them, with what slides along.
-void BoxSolver::correct_free() {
+// With the factor at hand: impulses of the free rows that answer what step_ holds.
+void BoxSolver::solve_step() {
   const int n = static_cast<int>(free_.size());
-  step_.resize(nth(n));
-  for (int i = 0; i < n; ++i) step_[nth(i)] = left_[nth(free_[nth(i)])];
   for (int c = 0; c < n; ++c) std::swap(step_[nth(c)], step_[nth(exchanged_[nth(c)])]);
   for (int r = 0; r < n; ++r) {
     double sum = step_[nth(r)];
@@ -184,6 +186,14 @@ void BoxSolver::correct_free() {
     for (int c = r + 1; c < n; ++c) sum -= factor_[nth(r * width_ + c)] * step_[nth(c)];
     step_[nth(r)] = sum / factor_[nth(r * width_ + r)];
   }
+}
+
+// What free rows still miss is given to them, with what slides along.
+void BoxSolver::correct_free() {
+  const int n = static_cast<int>(free_.size());
+  step_.resize(nth(n));
+  for (int i = 0; i < n; ++i) step_[nth(i)] = left_[nth(free_[nth(i)])];
+  solve_step();
   for (int i = 0; i < n; ++i) apply(free_[nth(i)], step_[nth(i)]);
   follow_normals();
 }
@@ -291,12 +301,18 @@ double BoxSolver::solve(double tolerance) {
 void BoxSolver::search(double tolerance) {
   restart();
   read_statuses();
+  for (int i = 0; i < size(); ++i) {
+    if (row(i).guess != unknown) status_[nth(i)] = row(i).guess;
+  }
   if (pivot(tolerance, kFirstExchanges)) return;
   restart();
   for (int i = 0; i < kSweeps; ++i) sweep();
   keep_best();
   if (least_missed_ <= tolerance) return;
-  if (settle_friction(tolerance)) return;
+  if (settle_friction(tolerance)) {
+    if (frozen_) agree_at_last(tolerance);
+    return;
+  }
   for (int i = 0; i < kLastSweeps; ++i) sweep();
   recenter();
   least_missed_ = missed();

@@ -11,14 +11,16 @@ namespace limber {
 /// lower and >= 0 at the upper one. [sim]
 class BoxSolver {
  public:
+  enum Status : unsigned char { free, at_lower, at_upper, unknown };
   struct Row {
     double left = 0;  ///< What is missing at the present impulse.
     double impulse = 0;
     double lower = 0;
     double upper = 0;
-    int normal = -1;      ///< Friction: the row before this one whose impulse it follows.
-    double friction = 0;  ///< Its bounds are plus and minus this part of the normal's impulse,
-    double most = 0;      ///< or this, where it is less (0: no such bound).
+    int normal = -1;         ///< Friction: the row before this one whose impulse it follows.
+    double friction = 0;     ///< Its bounds are plus and minus this part of the normal's impulse,
+    double most = 0;         ///< or this, where it is less (0: no such bound).
+    Status guess = unknown;  ///< Where it may stand in the end; unknown: as its impulse says.
   };
 
   /// Rows and a response of zeros.
@@ -35,9 +37,10 @@ class BoxSolver {
   /// Where friction and its normals agree on nothing (they need not), friction's bounds are those of the normals one
   /// round before; all other laws hold.
   double solve(double tolerance);
+  /// Where a row stood in what was found last.
+  Status status(int i) const { return status_[static_cast<std::size_t>(i)]; }
 
  private:
-  enum Status : unsigned char { free, at_lower, at_upper };
   /// More rows than this are not solved at once: it costs their cube.
   static constexpr int kMostFree = 90;
   static std::size_t nth(int i) { return static_cast<std::size_t>(i); }
@@ -59,12 +62,29 @@ class BoxSolver {
   void assemble();
   int slides_with(int i) const;
   bool decompose();
+  void solve_step();
   void correct_free();
   bool descend(double tolerance);
   bool step_within_bounds();
   int release(double tolerance, bool only_one);
+  struct Change {  // of a row's status, on the path
+    int row = -1;
+    double way = 0;
+    Status to = free;
+  };
+  bool follow_path(double tolerance);
+  void cover();
+  void uncover(double part);
+  bool lead();
+  double room_along(int i, Status side) const;
+  Change next_change(double sign, double most);
+  void meet(Change& next, int i, double room, double rate, Status to) const;
+  void walk(double way);
+  bool take_change(const Change& change);
+  void respond(std::vector<double>& to, int i, double change) const;
   void hold_friction(double part);
   bool settle_friction(double tolerance);
+  void agree_at_last(double tolerance);
 
   int stride_ = 0;
   std::vector<Row> rows_;
@@ -84,6 +104,9 @@ class BoxSolver {
   std::vector<int> exchanged_;  // line of the factor that came in each one's place
   std::vector<double> step_;
   std::vector<double> best_;
+  std::vector<double> cover_;  // added to what is left, times what of the path is left to go
+  std::vector<double> along_;  // of impulses and of what is left, per way along the path
+  std::vector<double> left_along_;
   double least_missed_ = 0;
   int width_ = 0;          // of a line of the factor
   bool frozen_ = false;    // friction's bounds stay

@@ -79,10 +79,18 @@ void IslandDirect::add_joint(JointConstraint& joint, int body_a, int body_b) {
   links_.push_back({&joint, body_a, body_b, -1, 0, Vec3(0), Vec3(0)});
 }
 
+int IslandDirect::give_up_broken() {
+  int broken = 0;
+  for (const Tree& t : trees_) broken += system_.give_up_broken(t.first, t.last);
+  return broken;
+}
+
 // Trees by themselves, contacts as they are; then what stands around them, until no law is broken.
 bool IslandDirect::settle() {
   for (const Tree& t : trees_) {
     if (!system_.settle(t.first, t.last, kExchanges)) return false;
+    const bool again = !outer_.empty() && system_.give_up_remembered(t.first, t.last) > 0;
+    if (again && !system_.refresh(t.first, t.last)) return false;
   }
   collect_axes();
   if (outer_.empty()) return finite();
@@ -92,11 +100,7 @@ bool IslandDirect::settle() {
     if (!build_responses()) return false;
     const bool pinned = give_up_pinned();
     const double missed = pinned ? 0 : solve_outer();
-    int broken = pinned ? 1 : 0;
-    for (int t = 0; t < static_cast<int>(trees_.size()); ++t) {
-      const Tree& tree = trees_[at(t)];
-      if (!pinned) broken += system_.give_up_broken(tree.first, tree.last);
-    }
+    int broken = pinned ? 1 : give_up_broken();
     // too stiff to be solved: then every motor and limit that contacts feel gives way as far as its force says
     if ((!(missed < kOuterMiss) || round == kRounds - 2) && give_up_touched() > 0) broken++;
     if (broken == 0) return std::isfinite(missed) && finite();

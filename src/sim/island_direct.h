@@ -89,6 +89,7 @@ class IslandDirect {
     double friction = 0;
     double most = 0;
     bool loop = false;
+    BoxSolver::Status guess = BoxSolver::unknown;  // where it stood in the round before
   };
 
   bool build_forest(const IslandPools& pools);
@@ -114,6 +115,7 @@ class IslandDirect {
   bool build_responses();
   bool give_up_pinned();
   int give_up_touched();
+  int give_up_broken();
   double solve_outer();
   bool settle();
   bool settle_all(IslandPools& pools, double h);
@@ -173,13 +175,13 @@ class IslandDirect {
   std::vector<double> impulses_;
   std::vector<int> push_rows_;
   std::vector<std::pair<btVector3, btVector3>>
-      before_calm_;                  // body: changes that contacts began with; empty: not calmed
-  std::size_t fixed_outer_ = 0;      // contacts and loops; behind them axes that were given up
-  std::vector<double> unbent_work_;  // tree: of its locks, unbent, J
-  std::uint64_t box_factors_ = 0;    // that box_ has the responses of
-  bool whips_ = false;               // some body turns by more than bends know
-  TreeRows poses_;                   // the trees where the step will end
-  std::vector<Pose> ends_;           // node: there
+      before_calm_;                           // body: changes that contacts began with; empty: not calmed
+  std::size_t fixed_outer_ = 0;               // contacts and loops; behind them axes that were given up
+  std::vector<double> unbent_work_;           // tree: of its locks, unbent, J
+  std::uint64_t box_factors_ = 0;             // that box_ has the responses of
+  bool whips_ = false;                        // some body turns by more than bends know
+  TreeRows poses_;                            // the trees where the step will end
+  std::vector<Pose> ends_;                    // node: there
   std::vector<std::array<double, 6>> goals_;  // link: where its locked axes are to be then
   bool measured_ = false;
   DirectCounts counts_;

@@ -74,6 +74,10 @@ void IslandDirect::collect_axes() {
     out.impulse = row.impulse;
     out.lower = row.lower;
     out.upper = row.upper;
+    out.guess = row.guess == TreeRow::outer      ? BoxSolver::unknown
+                : row.guess == TreeRow::active   ? BoxSolver::free
+                : row.guess == TreeRow::at_lower ? BoxSolver::at_lower
+                                                 : BoxSolver::at_upper;
     outer_.push_back(out);
   }
 }
@@ -191,12 +195,14 @@ double IslandDirect::solve_outer() {
         row.upper,
         row.normal,
         row.friction,
-        row.most};
+        row.most,
+        row.guess};
   }
   const double missed = box_.solve(kOuterTolerance);
   for (int i = 0; i < box_.size(); ++i) {
     OuterRow& row = outer_[at(i)];
     row.impulse = box_.row(i).impulse;
+    row.guess = box_.status(i);
     const double change = row.impulse - row.begun;
     if (row.axis != nullptr) {
       system_.push(*row.axis, change);

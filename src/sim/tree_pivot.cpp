@@ -16,6 +16,8 @@ constexpr double kLeastImpulse = 1e-4;
 constexpr int kActive = 1;
 constexpr int kBelow = 6;
 constexpr int kAbove = 11;
+// and that contacts made it so
+constexpr int kByContacts = 16;
 
 /// Rounds that may pass without fewer broken laws before single exchanges.
 constexpr int kPatience = 3;
@@ -91,9 +93,11 @@ void TreeRows::build_stair(int node, int axis, std::uint8_t before) {
       std::iter_swap(k - 1, k);
     }
   }
-  s.state = remembered(s, before);
+  s.state = remembered(s, before % kByContacts);
+  s.before = s.state >= 0 && before >= kByContacts;
   if (s.state < 0) s.state = guess(s);
   take_state(s);
+  for (int i = 0; s.before && i < s.count; ++i) row_of(s, i).guess = row_of(s, i).status;
   stairs_.push_back(s);
 }
 
@@ -117,7 +121,8 @@ TreeMemory TreeRows::memory(int node) const {
     const int i = state / 2;
     const bool top = i == s.count;
     const int base = (state & 1) != 0 ? kActive : (top ? kAbove : kBelow);
-    out[at(s.axis)] = static_cast<std::uint8_t>(base + row_of(s, top ? i - 1 : i).mark);
+    const int by = s.outer && state != s.state ? kByContacts : 0;
+    out[at(s.axis)] = static_cast<std::uint8_t>(by + base + row_of(s, top ? i - 1 : i).mark);
   }
   return out;
 }
@@ -242,6 +247,16 @@ bool TreeRows::pivot(int first, int last, int budget) {
   }
   give_up_broken(first, last);
   return refresh(first, last);
+}
+
+int TreeRows::give_up_remembered(int first, int last) {
+  int given_up = 0;
+  for (Stair& s : stairs(first, last)) {
+    if (!s.before || s.outer) continue;
+    give_up(s);
+    given_up++;
+  }
+  return given_up;
 }
 
 int TreeRows::give_up_all(int first, int last) {

@@ -24,6 +24,7 @@ struct TreeRow {
   std::uint8_t axis = 0;
   Mark mark = other;  ///< Tells the rows of an axis apart, from step to step; at most one of each hard kind.
   Status status = active;
+  Status guess = outer;  ///< Of a row given up: where it may come to stand; outer: as its impulse says.
 
   bool hard() const { return softness == 0; }
   bool bounded() const;
@@ -32,7 +33,7 @@ struct TreeRow {
 inline constexpr double kTreeInfinity = 1e15;
 inline bool TreeRow::bounded() const { return lower > -kTreeInfinity || upper < kTreeInfinity; }
 
-/// Which row of each axis was in force: what the next step starts from. 0: unknown.
+/// Which row of each axis was in force, and whether contacts made it so: what the next step starts from. 0: unknown.
 using TreeMemory = std::array<std::uint8_t, 6>;
 
 /// [sim]
@@ -68,6 +69,8 @@ class TreeRows {
   void correct(int first, int last);
   /// Rows whose law is now broken are given up (`outer`); how many axes that were. factor() is due when not 0.
   int give_up_broken(int first, int last);
+  /// Those that contacts brought elsewhere in the step before: likely they will again.
+  int give_up_remembered(int first, int last);
   /// All bounded rows that are in force, whether their law is broken or not.
   int give_up_all(int first, int last);
   /// Remembers impulses, rates and changes; goes back to them, rows that were given up since stay so.
@@ -97,6 +100,7 @@ class TreeRows {
     int state = 0;
     int want = 0;
     bool outer = false;
+    bool before = false;  // was brought elsewhere by contacts in the step before
   };
   static std::size_t at(int i) { return static_cast<std::size_t>(i); }
   TreeRow& row_of(const Stair& s, int i) { return rows_[at(stair_rows_[at(s.first + i)])]; }
