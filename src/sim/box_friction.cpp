@@ -12,6 +12,8 @@ constexpr int kDescents = 60;
 constexpr int kBlockReleases = 30;
 constexpr int kRecenterings = 5;
 constexpr int kFrictionRounds = 12;
+/// Changes of a status, for each row, before a path is given up.
+constexpr int kMostChanges = 4;
 constexpr int kFullRounds = 3;  // after them friction's bounds follow by halves
 
 }  // namespace
@@ -144,7 +146,10 @@ void BoxSolver::agree_at_last(double tolerance) {
   const double settled_missed = least_missed_;
   frozen_ = false;
   least_missed_ = 1e300;
-  if (follow_path(tolerance)) return;
+  const int changes = kMostChanges * (size() + 8);
+  if (follow_path(tolerance, changes)) return;
+  for (int i = 0; i < size(); ++i) put(i, std::clamp(0.0, row(i).lower, row(i).upper));
+  if (follow_path(tolerance, changes)) return;
   for (int i = 0; i < size(); ++i) put(i, settled_[nth(i)]);
   least_missed_ = settled_missed;
 }

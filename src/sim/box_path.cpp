@@ -8,8 +8,6 @@
 namespace limber {
 namespace {
 
-/// Changes of a status before the path is given up, for each row.
-constexpr int kMostChanges = 4;
 /// Exchanges in which the end of the path is made exact.
 constexpr int kPolishes = 8;
 /// Slower than this part of the fastest, nothing moves.
@@ -120,6 +118,7 @@ bool BoxSolver::take_change(const Change& change) {
   }
   status_[nth(i)] = change.to;
   if (change.to == free) return true;
+  bound(r);
   put(i, change.to == at_upper ? r.upper : r.lower);
   for (int k = 0; k < size(); ++k) {
     if (row(k).normal != i) continue;
@@ -129,7 +128,7 @@ bool BoxSolver::take_change(const Change& change) {
   return true;
 }
 
-bool BoxSolver::follow_path(double tolerance) {
+bool BoxSolver::follow_path(double tolerance, int changes) {
   if (std::any_of(rows_.begin(), rows_.end(), [](const Row& r) { return r.most > 0; })) return false;
   for (int i = 0; i < size(); ++i) {
     bound(row(i));
@@ -141,7 +140,7 @@ bool BoxSolver::follow_path(double tolerance) {
   double sign = -1;
   int entered = -1;
   Status was = free;
-  for (int changes = kMostChanges * (size() + 8); changes > 0 && lead(); --changes) {
+  for (; changes > 0 && lead(); --changes) {
     if (entered >= 0) {
       const Status now = status_[nth(entered)];
       const double opens = now == free ? room_along(entered, was)

@@ -72,7 +72,7 @@ class BoxSolver {
     double way = 0;
     Status to = free;
   };
-  bool follow_path(double tolerance);
+  bool follow_path(double tolerance, int changes);
   void cover();
   void uncover(double part);
   bool lead();

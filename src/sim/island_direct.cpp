@@ -14,8 +14,6 @@ constexpr int kExchanges = 16;
 constexpr int kRounds = 8;
 /// Motors keep below this turn of a body in one step, rad.
 constexpr double kMostTurn = 0.5;
-/// So often what whips when all is solved is calmed, and all is solved again.
-constexpr int kCalmings = 4;
 /// So often bends are corrected.
 constexpr int kBends = 4;
 /// Fastest bend, m/s: what flies apart is not pulled together in one step.
@@ -177,7 +175,7 @@ Vec3 IslandDirect::bend_of(const Link& link, const IslandPools& pools, double h)
   const Spatial a = moving(link.body_a);
   const Spatial b = moving(link.body_b);
   if (glm::length(a.angular) * h > kBulletsTurn || glm::length(b.angular) * h > kBulletsTurn) {
-    whips_ = true;
+    gapes_ = true;
     return link.bent;
   }
   const Vec3 arm_a = from_bt(joint.arm_a());
@@ -286,7 +284,7 @@ bool IslandDirect::finite() const {
   return true;
 }
 
-// Everything but the bends.
+// All but the bends.
 bool IslandDirect::settle_all(IslandPools& pools, double h) {
   outer_.clear();
   box_factors_ = 0;
@@ -296,6 +294,22 @@ bool IslandDirect::settle_all(IslandPools& pools, double h) {
   bool settled = settle();
   for (int pass = 0; pass < 3 && settled && limit_turns(pools, h); ++pass) settled = settle();
   return settled;
+}
+
+// Bends, until they fit, and of passive trees as far as they may.
+bool IslandDirect::bend_all(const IslandPools& pools, double h) {
+  gapes_ = false;
+  unbent_work_.clear();
+  for (const Tree& t : trees_) unbent_work_.push_back(passive(t) ? work_of_locks(t, pools) : 0);
+  bool solved = true;
+  bool bending = true;
+  for (int pass = 0; pass < kBends && solved && bending; ++pass) {
+    bending = bend_locks(pools, h);
+    if (bending) solved = settle();
+  }
+  gapes_ = gapes_ || bending;
+  for (int pass = 0; pass < kEasings && solved && ease_bends(pools, h); ++pass) solved = settle();
+  return solved;
 }
 
 bool IslandDirect::solve(IslandPools pools, const btContactSolverInfo& info) {
@@ -312,20 +326,8 @@ bool IslandDirect::solve(IslandPools pools, const btContactSolverInfo& info) {
   }
   if (solved && calm_whips(pools, h, Whips::before)) solved = build_forest(pools);
   if (solved) solved = settle_all(pools, h);
-  for (int pass = 0; pass < kCalmings && solved && calm_whips(pools, h, Whips::after); ++pass)
-    solved = build_forest(pools) && settle_all(pools, h);
-  bool bending = false;
-  whips_ = false;
-  if (solved) {
-    unbent_work_.clear();
-    for (const Tree& t : trees_) unbent_work_.push_back(passive(t) ? work_of_locks(t, pools) : 0);
-    bending = true;
-    for (int pass = 0; pass < kBends && solved && bending; ++pass) {
-      bending = bend_locks(pools, h);
-      if (bending) solved = settle();
-    }
-    for (int pass = 0; pass < kEasings && solved && ease_bends(pools, h); ++pass) solved = settle();
-  }
+  if (solved && calm_whips(pools, h, Whips::after)) solved = build_forest(pools) && settle_all(pools, h);
+  if (solved) solved = bend_all(pools, h);
   if (!solved || contradicts(system_, static_cast<int>(body_of_.size()), pools)) {
     counts_.fallbacks++;
     forget_calm(pools);
@@ -346,7 +348,7 @@ bool IslandDirect::solve(IslandPools pools, const btContactSolverInfo& info) {
   write(pools);
   push_apart(pools, info);
   if (measured_) take_residuals(pools);
-  if (bending || whips_) close_joints(pools, info);
+  if (gapes_) close_joints(pools, info);
   return true;
 }
 

@@ -119,6 +119,7 @@ class IslandDirect {
   double solve_outer();
   bool settle();
   bool settle_all(IslandPools& pools, double h);
+  bool bend_all(const IslandPools& pools, double h);
   enum class Whips : std::uint8_t { before, after };  // as the step began; as it was solved
   bool calm_whips(IslandPools& pools, double h, Whips which);
   Spatial moving(int node, const IslandPools& pools, Whips which) const;
@@ -145,7 +146,7 @@ class IslandDirect {
   void write(IslandPools& pools);
   void take_residuals(const IslandPools& pools);
 
-  /// What Bullet turns a body by in a step at most, rad, however fast it is (ANGULAR_MOTION_THRESHOLD).
+  /// A body that is faster than this in a step, rad, Bullet turns by less than that speed (ANGULAR_MOTION_THRESHOLD).
   static constexpr double kBulletsTurn = kPi / 4;
   /// A push that turns a body by more than this, rad, makes its joints gape.
   static constexpr double kFarthestPush = 0.1;
@@ -179,7 +180,7 @@ class IslandDirect {
   std::size_t fixed_outer_ = 0;               // contacts and loops; behind them axes that were given up
   std::vector<double> unbent_work_;           // tree: of its locks, unbent, J
   std::uint64_t box_factors_ = 0;             // that box_ has the responses of
-  bool whips_ = false;                        // some body turns by more than bends know
+  bool gapes_ = false;                        // perhaps: bends do not fit yet, or do not know of so wide a turn
   TreeRows poses_;                            // the trees where the step will end
   std::vector<Pose> ends_;                    // node: there
   std::vector<std::array<double, 6>> goals_;  // link: where its locked axes are to be then

@@ -252,7 +252,7 @@ void IslandDirect::push_apart(IslandPools& pools, const btContactSolverInfo& inf
     const Spatial& change = system_.trees.node(static_cast<int>(i)).change;
     pools.bodies[body_of_[i]].m_pushVelocity = to_bt(change.linear);
     pools.bodies[body_of_[i]].m_turnVelocity = to_bt(change.angular / turn);
-    whips_ = whips_ || glm::length(change.angular) * static_cast<double>(info.m_timeStep) > kFarthestPush;
+    gapes_ = gapes_ || glm::length(change.angular) * static_cast<double>(info.m_timeStep) > kFarthestPush;
   }
 }
 

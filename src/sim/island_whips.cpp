@@ -1,6 +1,5 @@
-// Whips: bodies that would turn by more in a step than Bullet turns any. Where they go is not where they turn, so their
-// joints part. Their tree goes on with less of its inner motion: what it moves as one piece, and so its momentum,
-// stays, and so does every law that its rates kept.
+// Whips: bodies so fast that Bullet turns them by less in a step than their speed says. Their tree goes on with less of
+// its inner motion: what it moves as one piece, and so its momentum, stays, and so does every law that its rates kept.
 #include <algorithm>
 
 #include "sim/island_direct.h"
@@ -8,10 +7,10 @@
 namespace limber {
 namespace {
 
-/// What is left of a turn that whips after all was solved, as a part of Bullet's most: contacts and motors will give
+/// What is left of a turn that whips after all was solved, as a part of kBulletsTurn: contacts and motors will give
 /// some of it back.
 constexpr double kLeft = 0.5;
-/// What was calmed to Bullet's most just now is not more than that.
+/// What was calmed to kBulletsTurn just now is not more than that.
 constexpr double kMore = 1.01;
 
 Vec3 center_of(const btRigidBody& body) { return from_bt(body.getCenterOfMassPosition()); }

@@ -111,5 +111,42 @@ TEST(BoxSolver, RowsThatDependOnEachOtherShare) {
   EXPECT_NEAR(sum, 4, 1e-6);
 }
 
+// Eight contacts of a machine of six axes, rough: rounds of friction and normals by turns agree on nothing in one of
+// twenty, and yet each has a solution (Anitescu and Potra 1997).
+TEST(BoxSolver, FrictionAndNormalsAgreeInTheEnd) {
+  constexpr int kContacts = 8;
+  constexpr int kAxes = 6;
+  for (unsigned seed = 1; seed <= 200; ++seed) {
+    std::mt19937 generator(seed);
+    const auto draw = [&] { return static_cast<double>(generator()) / 2147483648.0 - 1; };
+    double jacobian[3 * kContacts][kAxes];
+    double rates[kAxes];
+    for (auto& row : jacobian) {
+      for (double& x : row) x = draw();
+    }
+    for (double& x : rates) x = draw();
+    BoxSolver box;
+    box.start(3 * kContacts);
+    std::vector<double> left;
+    for (int i = 0; i < box.size(); ++i) {
+      for (int k = 0; k < box.size(); ++k) {
+        box.response(i, k) = i == k ? 1e-3 : 0;
+        for (int m = 0; m < kAxes; ++m) box.response(i, k) += jacobian[i][m] * jacobian[k][m];
+      }
+      BoxSolver::Row& r = box.row(i);
+      for (int m = 0; m < kAxes; ++m) r.left -= jacobian[i][m] * rates[m];
+      left.push_back(r.left);
+      if (i < kContacts) {
+        r.upper = 1e18;
+      } else {
+        r.normal = i % kContacts;
+        r.friction = 2;
+      }
+    }
+    EXPECT_LE(box.solve(1e-7), 1e-7) << seed;
+    EXPECT_LT(missed(box, left, std::vector<double>(left.size(), 0)), 1e-6) << seed;
+  }
+}
+
 }  // namespace
 }  // namespace limber

@@ -201,8 +201,8 @@ struct Whip {
   JointConstraint& joint = rig.joint(parent, child, {{0.1, 0, 0}, quat_identity()}, {{-0.1, 0, 0}, quat_identity()});
 };
 
-// Bullet turns no body by more than a quarter of pi in a step. Beyond that the inner motion is less, as far as needed;
-// what the whole does stays: 2 kg at (1, 2, 0) m/s, and 3 rad/s times 2·(0.01 + 1·0.1²) kg·m².
+// What is faster than a quarter of pi in a step Bullet turns by less. Beyond that the inner motion is less, as far as
+// needed; what the whole does stays: 2 kg at (1, 2, 0) m/s, and 3 rad/s times 2·(0.01 + 1·0.1²) kg·m².
 TEST(IslandDirect, WhatWhipsKeepsItsMomentum) {
   constexpr double kStep = 1.0 / 60;
   for (const double spin : {40.0, 100.0, 1000.0}) {
@@ -225,16 +225,46 @@ TEST(IslandDirect, WhatWhipsOnSomethingThatStandsIsCalmedToo) {
   EXPECT_NEAR(whip.opening(), kPi / 4 / kStep, 0.01 * kPi / 4 / kStep);
 }
 
-// 300 such trees are in `limber bench solver`. Where nobody calms whips five of these are worse than stock's.
+// It turns by more in the step than bends know of. Its parts are moved together where the step ends, without a
+// velocity: the middle of all goes where it was going.
+TEST(IslandDirect, JointsMeetWhereWhatWhipsArrives) {
+  constexpr double kStep = 1.0 / 60;
+  for (const double spin : {100.0, 1000.0}) {
+    SCOPED_TRACE(spin);
+    Whip whip(spin, false);
+    const auto middle = [&] {
+      return from_bt(whip.parent.getCenterOfMassPosition() + whip.child.getCenterOfMassPosition()) * 0.5;
+    };
+    const Vec3 before = middle();
+    whip.rig.steps(1, kStep);
+    EXPECT_NEAR(glm::length(whip.joint.offsets()), 0, 2e-4);
+    EXPECT_NEAR(glm::length(middle() - before - Vec3(1, 2, 0) * kStep), 0, 1e-5);
+  }
+}
+
+// 300 such trees are in `limber bench solver`. Where nobody closes their joints seven of these part by more than 10 cm,
+// stock's nearly all.
 TEST(IslandDirect, RandomTreesOverAFloorArePartedLessThanStocks) {
-  int worse = 0;
   for (unsigned seed = 500; seed < 530; ++seed) {
     const RawScene s = raw_at_step(raw_random_tree(seed, true), 1.0 / 30);
     const double a = play(*RawPlayer::make(s, RawSolver::stock), 60).gap;
     const double b = play(*RawPlayer::make(s, RawSolver::direct), 60).gap;
-    worse += b > 1.1 * a + 2e-3 ? 1 : 0;
+    EXPECT_LE(b, std::min(0.1, 1.1 * a + 2e-3)) << seed;
   }
-  EXPECT_LE(worse, 1);
+}
+
+// Deep in the floor after a fall, a part is pushed out so far that it turns.
+TEST(IslandDirect, APushThatTurnsPartsLeavesTheirJointsClosed) {
+  const RawScene s = raw_at_step(raw_random_tree(71028, true), 1.0 / 60);
+  EXPECT_LT(play(*RawPlayer::make(s, RawSolver::direct), 180).gap, 0.02);
+}
+
+// Where parts are moved together limits hold: without that these pass them by 0.4 rad.
+TEST(IslandDirect, ClosingJointsDoesNotPassTheirLimits) {
+  for (const unsigned seed : {520u, 544u, 552u}) {
+    const RawScene s = raw_at_step(raw_random_tree(seed, true), 1.0 / 30);
+    EXPECT_LT(play(*RawPlayer::make(s, RawSolver::direct), 90).limit_passed, 0.2) << seed;
+  }
 }
 
 TEST(IslandDirect, RepeatsBitForBit) {
