@@ -3,7 +3,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstring>
+
+#include "sim/dense.h"
 
 namespace limber {
 namespace {
@@ -11,24 +12,12 @@ namespace {
 constexpr int kFirstExchanges = 5;  // from where the rows stand
 constexpr int kSweeps = 8;
 constexpr int kLastSweeps = 48;
+/// After so many exchanges, a larger part of the rows that is still broken means that few more will not mend them.
+constexpr int kTrials = 2;
+constexpr double kHopeless = 0.2;
 constexpr int kPatience = 3;  // exchanges that may bring nothing before they are made one by one
 /// Rows that depend on each other (four contact points of a box) get this much softness, as part of their response.
 constexpr double kSoftness = 1e-6;
-
-using Pair = double __attribute__((vector_size(16)));
-
-// y -= a·x, over an even count
-void subtract_scaled(double* y, const double* a, double x, int count) {
-  const Pair scale = {x, x};
-  for (int i = 0; i < count; i += 2) {
-    Pair p;
-    Pair q;
-    std::memcpy(&p, y + i, sizeof p);
-    std::memcpy(&q, a + i, sizeof q);
-    p -= q * scale;
-    std::memcpy(y + i, &p, sizeof p);
-  }
-}
 
 }  // namespace
 
@@ -114,17 +103,22 @@ void BoxSolver::read_statuses() {
 // The free row whose impulse sets that of row i, at its bound; -1: none.
 int BoxSolver::slides_with(int i) const {
   const Row& r = rows_[nth(i)];
-  if (frozen_ || r.normal < 0 || status_[nth(i)] == free) return -1;
-  const bool capped = r.most > 0 && r.friction * rows_[nth(r.normal)].impulse > r.most;
-  return capped ? -1 : place_[nth(r.normal)];
+  const int tie = ties_[nth(i)];
+  const bool capped = tie >= 0 && r.most > 0 && r.friction * rows_[nth(r.normal)].impulse > r.most;
+  return capped ? -1 : tie;
 }
 
 // The system of the free rows; a sliding row's impulse is a part of its normal's.
 void BoxSolver::assemble() {
   free_.clear();
-  place_.assign(rows_.size(), -1);
+  place_.resize(rows_.size());
+  ties_.resize(rows_.size());
   for (int i = 0; i < size(); ++i) {
-    if (status_[nth(i)] != free || !(response(i, i) > 0)) continue;
+    const int normal = row(i).normal;
+    const bool bounded = status_[nth(i)] != free;
+    place_[nth(i)] = -1;
+    ties_[nth(i)] = bounded && normal >= 0 && !frozen_ ? place_[nth(normal)] : -1;
+    if (bounded || !(response(i, i) > 0)) continue;
     place_[nth(i)] = static_cast<int>(free_.size());
     free_.push_back(i);
   }
@@ -144,13 +138,15 @@ void BoxSolver::assemble() {
   }
 }
 
-// Into a lower and an upper triangle, lines exchanged. False where there are none.
+// Into a lower and an upper triangle, lines exchanged; where nothing slides along, the system is symmetric and
+// positive, and needs neither exchanges nor, of what is left of it, more than the upper half. False where there are
+// none.
 bool BoxSolver::decompose() {
   const int n = static_cast<int>(free_.size());
   exchanged_.resize(nth(n));
   for (int c = 0; c < n; ++c) {
     int top = c;
-    for (int r = c + 1; r < n; ++r) {
+    for (int r = c + 1; r < n && !frozen_; ++r) {
       if (std::fabs(factor_[nth(r * width_ + c)]) > std::fabs(factor_[nth(top * width_ + c)])) top = r;
     }
     double* line = &factor_[nth(c * width_)];
@@ -158,15 +154,17 @@ bool BoxSolver::decompose() {
     if (top != c) std::swap_ranges(line, line + width_, &factor_[nth(top * width_)]);
     if (!(std::fabs(line[c]) > 0) || !std::isfinite(line[c])) return false;
     const double inverse = 1 / line[c];
-    const int begin = c / 2 * 2;
     for (int r = c + 1; r < n; ++r) {
       double* other = &factor_[nth(r * width_)];
-      const double part = other[c] * inverse;
-      if (part == 0) continue;
-      const double before = other[begin];
-      subtract_scaled(other + begin, line + begin, part, width_ - begin);
-      other[begin] = before;
+      const double part = (frozen_ ? line[r] : other[c]) * inverse;
       other[c] = part;
+      if (part == 0) continue;
+      int from = frozen_ ? r : c + 1;
+      if (from % 2 != 0) {
+        other[from] -= part * line[from];
+        from++;
+      }
+      subtract_scaled(other + from, line + from, part, width_ - from);
     }
   }
   return true;
@@ -176,15 +174,10 @@ bool BoxSolver::decompose() {
 void BoxSolver::solve_step() {
   const int n = static_cast<int>(free_.size());
   for (int c = 0; c < n; ++c) std::swap(step_[nth(c)], step_[nth(exchanged_[nth(c)])]);
-  for (int r = 0; r < n; ++r) {
-    double sum = step_[nth(r)];
-    for (int c = 0; c < r; ++c) sum -= factor_[nth(r * width_ + c)] * step_[nth(c)];
-    step_[nth(r)] = sum;
-  }
+  for (int r = 0; r < n; ++r) step_[nth(r)] -= product(&factor_[nth(r * width_)], step_.data(), r);
   for (int r = n; r-- > 0;) {
-    double sum = step_[nth(r)];
-    for (int c = r + 1; c < n; ++c) sum -= factor_[nth(r * width_ + c)] * step_[nth(c)];
-    step_[nth(r)] = sum / factor_[nth(r * width_ + r)];
+    const double* line = &factor_[nth(r * width_)];
+    step_[nth(r)] = (step_[nth(r)] - product(line + r + 1, step_.data() + r + 1, n - r - 1)) / line[r];
   }
 }
 
@@ -202,11 +195,13 @@ void BoxSolver::follow_normals() {
   for (int i = 0; i < size(); ++i) {
     if (status_[nth(i)] == free) continue;
     Row& r = row(i);
-    bound(r);
-    double to = status_[nth(i)] == at_upper ? r.upper : r.lower;
-    // tied also where the normal pulls, which the next exchange sees
-    if (slides_with(i) >= 0) to = (status_[nth(i)] == at_upper ? r.friction : -r.friction) * row(r.normal).impulse;
-    put(i, to);
+    if (slides_with(i) >= 0) {
+      // tied also where the normal pulls, which the next exchange sees
+      put(i, (status_[nth(i)] == at_upper ? r.friction : -r.friction) * row(r.normal).impulse);
+    } else {
+      bound(r);
+      put(i, status_[nth(i)] == at_upper ? r.upper : r.lower);
+    }
   }
 }
 
@@ -271,6 +266,7 @@ bool BoxSolver::pivot(double tolerance, int exchanges) {
       continue;
     }
     factored_ = false;
+    if (round >= kTrials && broken > kHopeless * size()) return false;
     if (broken < fewest) {
       fewest = broken;
       patience = kPatience;
@@ -302,7 +298,14 @@ void BoxSolver::search(double tolerance) {
   restart();
   read_statuses();
   for (int i = 0; i < size(); ++i) {
-    if (row(i).guess != unknown) status_[nth(i)] = row(i).guess;
+    const Row& r = row(i);
+    if (r.guess != unknown) {
+      status_[nth(i)] = r.guess;
+    } else if (r.normal >= 0 && r.lower < r.upper) {
+      // friction, by where it would go if it stood alone
+      const double alone = r.impulse + left_[nth(i)] / response(i, i);
+      status_[nth(i)] = alone < r.lower ? at_lower : alone > r.upper ? at_upper : free;
+    }
   }
   if (pivot(tolerance, kFirstExchanges)) return;
   restart();

@@ -100,6 +100,7 @@ class BoxSolver {
   std::vector<double> left_before_;
   std::vector<int> free_;
   std::vector<int> place_;  // row: in free_, or -1
+  std::vector<int> ties_;   // row: place of the normal that it slides with, or -1
   std::vector<double> factor_;
   std::vector<int> exchanged_;  // line of the factor that came in each one's place
   std::vector<double> step_;

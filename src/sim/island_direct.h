@@ -2,6 +2,7 @@
 // the trees' response. docs/solver.md.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <utility>
 #include <vector>
@@ -73,6 +74,11 @@ class IslandDirect {
     int node = -1;
     Spatial pull;
   };
+  struct Reach {  // what an outer row lets a tree feel
+    int tree = -1;
+    int begin = 0;  // in felt_
+    int count = 0;
+  };
   struct OuterRow {
     Side a, b;
     TreeRow* axis = nullptr;                // a row of a tree's axis instead
@@ -107,11 +113,9 @@ class IslandDirect {
   void collect_loops(const IslandPools& pools);
   void collect_axes();
   double rate_of(const OuterRow& row) const;
-  double response_of(const OuterRow& row, int tree_a, int tree_b) const;
   int tree_at(int node) const { return node < 0 ? -1 : tree_of_[static_cast<std::size_t>(node)]; }
   void load(const OuterRow& row, double impulse);
-  void unload(const OuterRow& row);
-  void mark_paths();
+  void feel(const OuterRow& row, std::array<Reach, 2>& reaches);
   bool build_responses();
   bool give_up_pinned();
   int give_up_touched();
@@ -172,7 +176,8 @@ class IslandDirect {
   std::vector<int> body_links_;
   std::vector<int> stack_;
   std::vector<OuterRow> outer_;
-  std::vector<unsigned char> path_;
+  std::vector<double> felt_;                   // by all outer rows, one after the other
+  std::vector<std::array<Reach, 2>> reaches_;  // outer row: the trees it touches
   std::vector<double> impulses_;
   std::vector<int> push_rows_;
   std::vector<std::pair<btVector3, btVector3>>

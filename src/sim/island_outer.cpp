@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "sim/dense.h"
 #include "sim/island_direct.h"
 
 namespace limber {
@@ -101,60 +102,52 @@ void IslandDirect::load(const OuterRow& row, double impulse) {
   }
 }
 
-void IslandDirect::unload(const OuterRow& row) {
-  if (row.axis != nullptr) system_.trees.node(row.axis->node).ask[row.axis->axis] = 0;
-  for (const Side* side : {&row.a, &row.b}) {
-    if (side->node >= 0) system_.trees.node(side->node).load = {};
-  }
-}
-
-// What the last respond() of these two trees gave a row.
-double IslandDirect::response_of(const OuterRow& row, int tree_a, int tree_b) const {
-  const auto moved = [&](int node) { return node >= 0 && (tree_at(node) == tree_a || tree_at(node) == tree_b); };
-  if (row.axis != nullptr) return moved(row.a.node) ? system_.trees.node(row.a.node).rate[row.axis->axis] : 0;
-  double rate = 0;
-  for (const Side* side : {&row.a, &row.b}) {
-    if (moved(side->node)) rate += dot(side->pull, system_.trees.node(side->node).change);
-  }
-  return rate;
-}
-
-void IslandDirect::mark_paths() {
-  path_.assign(body_of_.size(), 0);
-  for (const OuterRow& row : outer_) {
-    for (const Side* side : {&row.a, &row.b}) {
-      for (int n = side->node; n >= 0 && path_[at(n)] == 0; n = system_.trees.node(n).parent) path_[at(n)] = 1;
-    }
-  }
+// What an impulse of the row lets the free axes of its trees feel, behind all that is in felt_.
+void IslandDirect::feel(const OuterRow& row, std::array<Reach, 2>& reaches) {
+  const auto open = [&](int tree, int count) {
+    const Reach reach{tree, static_cast<int>(felt_.size()), count};
+    felt_.resize(felt_.size() + at(reach.count), 0);
+    return reach;
+  };
+  const auto axes = [&](const Side& side) { return side.node < 0 ? 0 : system_.trees.free_axes(side.node); };
+  const auto take = [&](const Reach& reach, const TreeLoad& a, const TreeLoad& b) {
+    system_.trees.feel(a, b, std::span(felt_).subspan(at(reach.begin), at(reach.count)));
+  };
+  const TreeLoad a{row.a.node, row.a.pull};
+  const TreeLoad b{row.b.node, row.b.pull};
+  const int tree_a = tree_at(a.node);
+  const int tree_b = tree_at(b.node);
+  double* ask = row.axis != nullptr ? &system_.trees.node(a.node).ask[row.axis->axis] : nullptr;
+  if (ask != nullptr) *ask = 1;
+  reaches[0] = open(tree_a, std::max(axes(row.a), tree_b == tree_a ? axes(row.b) : 0));
+  take(reaches[0], a, tree_b == tree_a ? b : TreeLoad{});
+  if (ask != nullptr) *ask = 0;
+  reaches[1] = open(tree_b == tree_a ? -1 : tree_b, tree_b == tree_a ? 0 : axes(row.b));
+  if (tree_b != tree_a) take(reaches[1], b, {});
 }
 
 bool IslandDirect::build_responses() {
   if (box_factors_ == system_.factors() && box_.size() == static_cast<int>(outer_.size())) return true;
   box_factors_ = system_.factors();
-  mark_paths();
   const int count = static_cast<int>(outer_.size());
   box_.start(count);
-  for (int i = 0; i < system_.trees.size(); ++i) {
-    system_.trees.node(i).ask.fill(0);
-    system_.trees.node(i).load = {};
-  }
+  for (int i = 0; i < system_.trees.size(); ++i) system_.trees.node(i).ask.fill(0);
+  felt_.clear();
+  reaches_.resize(outer_.size());
+  for (std::size_t i = 0; i < outer_.size(); ++i) feel(outer_[i], reaches_[i]);
+  const auto together = [this](const Reach& a, const Reach& b) {
+    if (a.tree != b.tree || a.tree < 0) return 0.0;
+    return product(&felt_[at(a.begin)], &felt_[at(b.begin)], std::min(a.count, b.count));
+  };
   for (int i = 0; i < count; ++i) {
-    const OuterRow& row = outer_[at(i)];
-    const int tree_a = tree_at(row.a.node);
-    const int tree_b = tree_at(row.b.node);
-    load(row, 1);
-    for (const int tree : {tree_a, tree_b == tree_a ? -1 : tree_b}) {
-      if (tree >= 0) system_.trees.respond(trees_[at(tree)].first, trees_[at(tree)].last, path_.data());
-    }
-    unload(row);
+    const auto& [first, second] = reaches_[at(i)];
     for (int k = i; k < count; ++k) {
-      const OuterRow& other = outer_[at(k)];
-      const int a = tree_at(other.a.node);
-      const int b = tree_at(other.b.node);
-      const bool touches = (a >= 0 && (a == tree_a || a == tree_b)) || (b >= 0 && (b == tree_a || b == tree_b));
-      if (touches) box_.response(i, k) = box_.response(k, i) = response_of(other, tree_a, tree_b);
+      const auto& [other, another] = reaches_[at(k)];
+      double response = together(first, other) + together(first, another);
+      if (second.tree >= 0) response += together(second, other) + together(second, another);
+      box_.response(i, k) = box_.response(k, i) = response;
     }
-    box_.response(i, i) += row.softness;
+    box_.response(i, i) += outer_[at(i)].softness;
     if (!std::isfinite(box_.response(i, i))) return false;
   }
   return true;

@@ -2,6 +2,10 @@
 // nothing. Then impulses run up to the roots and velocities down to the leaves.
 #include "sim/tree_solver.h"
 
+#include <bit>
+#include <cmath>
+#include <utility>
+
 namespace limber {
 namespace {
 
@@ -17,7 +21,10 @@ TreeNode& TreeSolver::add(int parent) {
 }
 
 bool TreeSolver::factor(int first, int last) {
-  for (int i = first; i < last; ++i) node(i).rigid = node(i).inertia;
+  for (int i = first; i < last; ++i) {
+    node(i).rigid = node(i).inertia;
+    node(i).first_free = i > first ? free_axes(i - 1) : 0;
+  }
   for (int i = last - 1; i >= first; --i) {
     TreeNode& n = node(i);
     for (std::size_t k = 0; k < 6; ++k) {
@@ -71,13 +78,9 @@ void TreeSolver::solve(int first, int last) {
   }
 }
 
-void TreeSolver::respond(int first, int last, const unsigned char* path) {
-  const auto off = [path](int i) { return path != nullptr && path[i] == 0; };
-  for (int i = first; i < last; ++i) {
-    if (!off(i)) node(i).change = node(i).load;
-  }
+void TreeSolver::respond(int first, int last) {
+  for (int i = first; i < last; ++i) node(i).change = node(i).load;
   for (int i = last - 1; i >= first; --i) {
-    if (off(i)) continue;
     TreeNode& n = node(i);
     Spatial& push = n.change;
     for (std::size_t k = 0; k < 6; ++k) {
@@ -88,7 +91,6 @@ void TreeSolver::respond(int first, int last, const unsigned char* path) {
     if (n.parent >= 0) node(n.parent).change += brought_back(push, n.shift);
   }
   for (int i = first; i < last; ++i) {
-    if (off(i)) continue;
     TreeNode& n = node(i);
     Spatial v;
     if (n.parent >= 0) v = carried(node(n.parent).change, n.shift);
@@ -100,5 +102,26 @@ void TreeSolver::respond(int first, int last, const unsigned char* path) {
     n.change = v;
   }
 }
+
+void TreeSolver::feel(TreeLoad a, TreeLoad b, std::span<double> felt) const {
+  while (a.node >= 0 || b.node >= 0) {
+    if (a.node < b.node) std::swap(a, b);
+    if (a.node == b.node) {
+      a.impulse += b.impulse;
+      b.node = -1;
+    }
+    const TreeNode& n = node(a.node);
+    auto number = static_cast<std::size_t>(n.first_free);
+    for (std::size_t k = 0; k < 6; ++k) {
+      if ((n.held >> k & 1) != 0) continue;
+      const double feels = n.ask[k] + dot(n.axis[k], a.impulse);
+      a.impulse = a.impulse - n.lean[k] * (feels * n.ease[k]);
+      felt[number++] = feels * std::sqrt(n.ease[k]);
+    }
+    a = {n.parent, brought_back(a.impulse, n.shift)};
+  }
+}
+
+int TreeSolver::free_axes(int i) const { return node(i).first_free + 6 - std::popcount(node(i).held & 63U); }
 
 }  // namespace limber

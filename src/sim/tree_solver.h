@@ -3,6 +3,7 @@
 #pragma once
 
 #include <array>
+#include <span>
 #include <vector>
 
 #include "sim/tree_algebra.h"
@@ -33,8 +34,15 @@ struct TreeNode {
   SpatialInertia rigid;          ///< Of all that hangs here, as the parent feels it.
   std::array<Spatial, 6> lean;   ///< Free axes: inertia · axis, when their turn came.
   std::array<double, 6> ease{};  ///< Free axes: 1 / (axis · lean + conductance).
+  int first_free = 0;            ///< Number of its first free axis, among those of its tree.
   std::array<double, 6> left{};
   Spatial carried_motion;
+};
+
+/// An impulse from outside on one body; node < 0: none.
+struct TreeLoad {
+  int node = -1;
+  Spatial impulse;
 };
 
 /// [sim]
@@ -51,10 +59,14 @@ class TreeSolver {
   bool factor(int first, int last);
   /// What `ask` and `load` do, with the factor of the present `held` and `conductance`.
   void solve(int first, int last);
-  /// What loads and asks of free axes do, held axes asking for nothing: `change`, and `rate` of free axes. Where `path`
-  /// is given, only nodes that it marks are looked at: it must hold the loaded ones with all their ancestors, and those
-  /// whose change is wanted with theirs.
-  void respond(int first, int last, const unsigned char* path = nullptr);
+  /// What loads and asks of free axes do, held axes asking for nothing: `change`, and `rate` of free axes.
+  void respond(int first, int last);
+  /// Half of a response, for loads on two bodies of one tree and asks of free axes on the way to its root: what each
+  /// free axis there feels, times the root of its ease, at its number in `felt`, whose other numbers stay. The product
+  /// of what two loads let the axes feel is the rate that an impulse of one gives the other.
+  void feel(TreeLoad a, TreeLoad b, std::span<double> felt) const;
+  /// Numbers in use on the way from a node to its root lie below this.
+  int free_axes(int node) const;
 
  private:
   std::vector<TreeNode> nodes_;
