@@ -16,7 +16,7 @@ struct Hinge {
     n.inertia = SpatialInertia(1, one);
     for (int i = 0; i < 3; ++i) {
       n.axis[static_cast<std::size_t>(i)].linear[i] = 1;
-      n.axis[static_cast<std::size_t>(3 + i)].angular[i] = 1;
+      n.axis[3 + static_cast<std::size_t>(i)].angular[i] = 1;
     }
     for (int axis = 0; axis < 5; ++axis) rows.add(axis, 0, 0, -2 * kTreeInfinity, 2 * kTreeInfinity, TreeRow::other);
     rows.add(5, 0.05, 0, -0.1, 0.1, TreeRow::motor);
