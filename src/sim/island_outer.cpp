@@ -137,7 +137,7 @@ bool IslandDirect::build_responses() {
   for (std::size_t i = 0; i < outer_.size(); ++i) feel(outer_[i], reaches_[i]);
   const auto together = [this](const Reach& a, const Reach& b) {
     if (a.tree != b.tree || a.tree < 0) return 0.0;
-    return product(&felt_[at(a.begin)], &felt_[at(b.begin)], std::min(a.count, b.count));
+    return product(felt_.data() + a.begin, felt_.data() + b.begin, std::min(a.count, b.count));
   };
   for (int i = 0; i < count; ++i) {
     const auto& [first, second] = reaches_[at(i)];
