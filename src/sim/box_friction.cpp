@@ -22,13 +22,11 @@ constexpr int kFullRounds = 3;  // after them friction's bounds follow by halves
 // off at bounds where that still leads down. Each step makes the dual energy less.
 bool BoxSolver::descend(double tolerance) {
   before_.resize(rows_.size());
+  follow_normals();
   int settled = 0;
   for (int round = 0; round < kDescents; ++round) {
-    assemble();
-    if (static_cast<int>(free_.size()) > kMostFree || !decompose()) return false;
-    left_before_ = left_;
-    for (int i = 0; i < size(); ++i) before_[nth(i)] = row(i).impulse;
-    correct_free();
+    if (!choose_free()) return false;
+    step_free();
     if (!step_within_bounds()) continue;
     if (release(tolerance, round > kBlockReleases) > 0) continue;
     recenter();
@@ -40,43 +38,65 @@ bool BoxSolver::descend(double tolerance) {
   return false;
 }
 
+bool BoxSolver::choose_free() {
+  marks_.resize(rows_.size());
+  for (int i = 0; i < size(); ++i) marks_[nth(i)] = status_[nth(i)] == free && response(i, i) > 0 ? 1 : 0;
+  return steady_.choose(marks_, kMostFree);
+}
+
+// What free rows miss is given to them.
+void BoxSolver::step_free() {
+  const std::span<const int> rows = steady_.rows();
+  left_before_ = left_;
+  step_.resize(rows.size());
+  for (std::size_t k = 0; k < rows.size(); ++k) {
+    before_[nth(rows[k])] = row(rows[k]).impulse;
+    step_[k] = left_[nth(rows[k])];
+  }
+  steady_.solve(step_);
+  for (std::size_t k = 0; k < rows.size(); ++k) change(rows[k], step_[k]);
+  respond();
+}
+
 // From before_ to where the free rows want to be, or as far as that may be gone. True: all of it.
 bool BoxSolver::step_within_bounds() {
+  const std::span<const int> rows = steady_.rows();
   double reach = 1;
-  for (const int i : free_) {
+  for (const int i : rows) {
     const Row& r = row(i);
     const double from = before_[nth(i)];
     if (r.impulse > r.upper) reach = std::min(reach, (r.upper - from) / (r.impulse - from));
     if (r.impulse < r.lower) reach = std::min(reach, (r.lower - from) / (r.impulse - from));
   }
   if (reach == 1) return true;
-  step_.resize(free_.size());
-  for (std::size_t k = 0; k < free_.size(); ++k) {
-    const int i = free_[k];
+  for (std::size_t k = 0; k < rows.size(); ++k) {
+    const int i = rows[k];
     step_[k] = row(i).impulse - before_[nth(i)];
-    put(i, std::clamp(row(i).impulse, row(i).lower, row(i).upper));
+    change_to(i, std::clamp(row(i).impulse, row(i).lower, row(i).upper));
   }
+  respond();
   double gained = 0;
-  for (const int i : free_) gained += (row(i).impulse - before_[nth(i)]) * (left_before_[nth(i)] + left_[nth(i)]);
+  for (const int i : rows) gained += (row(i).impulse - before_[nth(i)]) * (left_before_[nth(i)] + left_[nth(i)]);
   const bool down = gained > 0;
-  for (std::size_t k = 0; k < free_.size(); ++k) {
-    const int i = free_[k];
+  for (std::size_t k = 0; k < rows.size(); ++k) {
+    const int i = rows[k];
     Row& r = row(i);
     const double from = before_[nth(i)];
     const double to = from + step_[k];
     const bool over = to > r.upper;
     if (!over && to >= r.lower) {
-      if (!down) put(i, from + reach * step_[k]);
+      if (!down) change_to(i, from + reach * step_[k]);
       continue;
     }
     const double bound = over ? r.upper : r.lower;
     if (down || std::fabs(bound - from) <= reach * std::fabs(step_[k]) * (1 + 1e-12)) {
-      put(i, bound);
+      change_to(i, bound);
       status_[nth(i)] = over ? at_upper : at_lower;
     } else {
-      put(i, from + reach * step_[k]);
+      change_to(i, from + reach * step_[k]);
     }
   }
+  respond();
   return false;
 }
 
@@ -119,9 +139,11 @@ void BoxSolver::hold_friction(double part) {
 // Friction bounded by the normals of the round before: a problem that always has a solution, and one that the tied one
 // is near.
 bool BoxSolver::settle_friction(double tolerance) {
+  steady_.start(response_, stride_);
   for (int round = 0; round < kFrictionRounds; ++round) {
     hold_friction(round < kFullRounds ? 1 : 0.5);
-    for (int i = 0; i < size(); ++i) put(i, std::clamp(row(i).impulse, row(i).lower, row(i).upper));
+    for (int i = 0; i < size(); ++i) change_to(i, std::clamp(row(i).impulse, row(i).lower, row(i).upper));
+    respond();
     if (round == 0) read_statuses();
     if (!descend(tolerance)) return false;
     if (round + 1 == kFrictionRounds) break;
@@ -133,7 +155,8 @@ bool BoxSolver::settle_friction(double tolerance) {
     least_missed_ = 1e300;
     if (pivot(tolerance, kTiedExchanges)) return true;
     least_missed_ = settled_missed;
-    for (int i = 0; i < size(); ++i) put(i, settled_[nth(i)]);
+    for (int i = 0; i < size(); ++i) change_to(i, settled_[nth(i)]);
+    respond();
     recenter();
     status_ = settled_status_;
   }
@@ -148,9 +171,11 @@ void BoxSolver::agree_at_last(double tolerance) {
   least_missed_ = 1e300;
   const int changes = kMostChanges * (size() + 8);
   if (follow_path(tolerance, changes)) return;
-  for (int i = 0; i < size(); ++i) put(i, std::clamp(0.0, row(i).lower, row(i).upper));
+  for (int i = 0; i < size(); ++i) change_to(i, std::clamp(0.0, row(i).lower, row(i).upper));
+  respond();
   if (follow_path(tolerance, changes)) return;
-  for (int i = 0; i < size(); ++i) put(i, settled_[nth(i)]);
+  for (int i = 0; i < size(); ++i) change_to(i, settled_[nth(i)]);
+  respond();
   least_missed_ = settled_missed;
 }
 

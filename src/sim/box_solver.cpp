@@ -13,7 +13,7 @@ constexpr int kFirstExchanges = 5;  // from where the rows stand
 constexpr int kSweeps = 8;
 constexpr int kLastSweeps = 48;
 /// After so many exchanges, a larger part of the rows that is still broken means that few more will not mend them.
-constexpr int kTrials = 2;
+constexpr int kTrials = 1;
 constexpr double kHopeless = 0.2;
 constexpr int kPatience = 3;  // exchanges that may bring nothing before they are made one by one
 /// Rows that depend on each other (four contact points of a box) get this much softness, as part of their response.
@@ -46,6 +46,18 @@ void BoxSolver::respond(std::vector<double>& to, int i, double change) const {
   subtract_scaled(to.data(), &response_[nth(i * stride_)], change, stride_);
 }
 
+// Changes of impulses that others need not hear of at once: respond() tells all rows together.
+void BoxSolver::change(int i, double by) {
+  if (by == 0) return;
+  row(i).impulse += by;
+  changed_.push_back({&response_[nth(i * stride_)], by});
+}
+
+void BoxSolver::respond() {
+  subtract_scaled(left_.data(), changed_, stride_);
+  changed_.clear();
+}
+
 void BoxSolver::restart() {
   for (int i = 0; i < size(); ++i) {
     row(i).impulse = center_[nth(i)] = start_[nth(i)];
@@ -56,10 +68,9 @@ void BoxSolver::restart() {
 void BoxSolver::sweep() {
   for (int i = 0; i < size(); ++i) {
     Row& r = row(i);
-    const double own = response(i, i);
-    if (!(own > 0)) continue;
+    if (!(response(i, i) > 0)) continue;
     bound(r);
-    put(i, std::clamp(r.impulse + left_[nth(i)] / own, r.lower, r.upper));
+    put(i, std::clamp(r.impulse + left_[nth(i)] * eases_[nth(i)], r.lower, r.upper));
   }
 }
 
@@ -70,8 +81,7 @@ double BoxSolver::missed() {
     const double own = response(i, i);
     if (!(own > 0)) continue;
     bound(r);
-    const double after = std::clamp(r.impulse + left_[nth(i)] / own, r.lower, r.upper);
-    const double miss = std::fabs(after - r.impulse) * own;
+    const double miss = std::fabs(std::clamp(left_[nth(i)], (r.lower - r.impulse) * own, (r.upper - r.impulse) * own));
     if (!(miss <= most)) most = miss;
   }
   return most;
@@ -86,7 +96,8 @@ void BoxSolver::keep_best() {
 }
 
 void BoxSolver::take_best() {
-  for (int i = 0; i < size(); ++i) put(i, best_[nth(i)]);
+  for (int i = 0; i < size(); ++i) change_to(i, best_[nth(i)]);
+  respond();
 }
 
 void BoxSolver::read_statuses() {
@@ -102,6 +113,7 @@ void BoxSolver::read_statuses() {
 
 // The free row whose impulse sets that of row i, at its bound; -1: none.
 int BoxSolver::slides_with(int i) const {
+  if (frozen_) return -1;
   const Row& r = rows_[nth(i)];
   const int tie = ties_[nth(i)];
   const bool capped = tie >= 0 && r.most > 0 && r.friction * rows_[nth(r.normal)].impulse > r.most;
@@ -117,7 +129,7 @@ void BoxSolver::assemble() {
     const int normal = row(i).normal;
     const bool bounded = status_[nth(i)] != free;
     place_[nth(i)] = -1;
-    ties_[nth(i)] = bounded && normal >= 0 && !frozen_ ? place_[nth(normal)] : -1;
+    ties_[nth(i)] = bounded && normal >= 0 ? place_[nth(normal)] : -1;
     if (bounded || !(response(i, i) > 0)) continue;
     place_[nth(i)] = static_cast<int>(free_.size());
     free_.push_back(i);
@@ -138,15 +150,13 @@ void BoxSolver::assemble() {
   }
 }
 
-// Into a lower and an upper triangle, lines exchanged; where nothing slides along, the system is symmetric and
-// positive, and needs neither exchanges nor, of what is left of it, more than the upper half. False where there are
-// none.
+// Into a lower and an upper triangle, lines exchanged. False where there are none.
 bool BoxSolver::decompose() {
   const int n = static_cast<int>(free_.size());
   exchanged_.resize(nth(n));
   for (int c = 0; c < n; ++c) {
     int top = c;
-    for (int r = c + 1; r < n && !frozen_; ++r) {
+    for (int r = c + 1; r < n; ++r) {
       if (std::fabs(factor_[nth(r * width_ + c)]) > std::fabs(factor_[nth(top * width_ + c)])) top = r;
     }
     double* line = &factor_[nth(c * width_)];
@@ -156,10 +166,10 @@ bool BoxSolver::decompose() {
     const double inverse = 1 / line[c];
     for (int r = c + 1; r < n; ++r) {
       double* other = &factor_[nth(r * width_)];
-      const double part = (frozen_ ? line[r] : other[c]) * inverse;
+      const double part = other[c] * inverse;
       other[c] = part;
       if (part == 0) continue;
-      int from = frozen_ ? r : c + 1;
+      int from = c + 1;
       if (from % 2 != 0) {
         other[from] -= part * line[from];
         from++;
@@ -187,7 +197,7 @@ void BoxSolver::correct_free() {
   step_.resize(nth(n));
   for (int i = 0; i < n; ++i) step_[nth(i)] = left_[nth(free_[nth(i)])];
   solve_step();
-  for (int i = 0; i < n; ++i) apply(free_[nth(i)], step_[nth(i)]);
+  for (int i = 0; i < n; ++i) change(free_[nth(i)], step_[nth(i)]);
   follow_normals();
 }
 
@@ -197,12 +207,13 @@ void BoxSolver::follow_normals() {
     Row& r = row(i);
     if (slides_with(i) >= 0) {
       // tied also where the normal pulls, which the next exchange sees
-      put(i, (status_[nth(i)] == at_upper ? r.friction : -r.friction) * row(r.normal).impulse);
+      change_to(i, (status_[nth(i)] == at_upper ? r.friction : -r.friction) * row(r.normal).impulse);
     } else {
       bound(r);
-      put(i, status_[nth(i)] == at_upper ? r.upper : r.lower);
+      change_to(i, status_[nth(i)] == at_upper ? r.upper : r.lower);
     }
   }
+  respond();
 }
 
 bool BoxSolver::solve_free() {
@@ -235,7 +246,7 @@ int BoxSolver::exchange(double tolerance, bool only_last) {
     Status to = status;
     const double left = left_[nth(i)];
     if (status == free) {
-      const double slack = 0.1 * tolerance / response(i, i);
+      const double slack = 0.1 * tolerance * eases_[nth(i)];
       if (r.impulse < r.lower - slack) to = at_lower;
       if (r.impulse > r.upper + slack) to = at_upper;
     } else if (r.lower < r.upper && (status == at_lower ? left > tolerance : left < -tolerance)) {
@@ -288,7 +299,11 @@ double BoxSolver::solve(double tolerance) {
   frozen_ = false;
   least_missed_ = 1e300;
   for (std::size_t i = 0; i < n; ++i) start_[i] = best_[i] = rows_[i].impulse;
-  for (int i = 0; i < size(); ++i) response(i, i) *= 1 + kSoftness;
+  eases_.resize(n);
+  for (int i = 0; i < size(); ++i) {
+    response(i, i) *= 1 + kSoftness;
+    eases_[nth(i)] = 1 / response(i, i);
+  }
   search(tolerance);
   for (int i = 0; i < size(); ++i) response(i, i) /= 1 + kSoftness;
   return least_missed_;
@@ -303,12 +318,14 @@ void BoxSolver::search(double tolerance) {
       status_[nth(i)] = r.guess;
     } else if (r.normal >= 0 && r.lower < r.upper) {
       // friction, by where it would go if it stood alone
-      const double alone = r.impulse + left_[nth(i)] / response(i, i);
+      const double alone = r.impulse + left_[nth(i)] * eases_[nth(i)];
       status_[nth(i)] = alone < r.lower ? at_lower : alone > r.upper ? at_upper : free;
     }
   }
   if (pivot(tolerance, kFirstExchanges)) return;
   restart();
+  for (int i = 0; i < size(); ++i) change(i, row(i).ahead);
+  respond();
   for (int i = 0; i < kSweeps; ++i) sweep();
   keep_best();
   if (least_missed_ <= tolerance) return;

@@ -5,6 +5,9 @@
 #include <cstddef>
 #include <vector>
 
+#include "sim/dense.h"
+#include "sim/free_factor.h"
+
 namespace limber {
 
 /// left = wanted rate - response·impulses, one each row; a row obeys when left is 0 within its bounds, <= 0 at the
@@ -21,6 +24,7 @@ class BoxSolver {
     double friction = 0;     ///< Its bounds are plus and minus this part of the normal's impulse,
     double most = 0;         ///< or this, where it is less (0: no such bound).
     Status guess = unknown;  ///< Where it may stand in the end; unknown: as its impulse says.
+    double ahead = 0;        ///< The search begins with so much more than its impulse.
   };
 
   /// Rows and a response of zeros.
@@ -50,6 +54,9 @@ class BoxSolver {
   void recenter();
   void apply(int i, double change);
   void put(int i, double impulse) { apply(i, impulse - row(i).impulse); }
+  void change(int i, double by);
+  void change_to(int i, double impulse) { change(i, impulse - row(i).impulse); }
+  void respond();
   void sweep();
   double missed();
   void keep_best();
@@ -65,6 +72,8 @@ class BoxSolver {
   void solve_step();
   void correct_free();
   bool descend(double tolerance);
+  bool choose_free();
+  void step_free();
   bool step_within_bounds();
   int release(double tolerance, bool only_one);
   struct Change {  // of a row's status, on the path
@@ -90,12 +99,16 @@ class BoxSolver {
   std::vector<Row> rows_;
   std::vector<double> left_;
   std::vector<double> response_;
+  std::vector<double> eases_;  // one through a row's own response
+  std::vector<ScaledLine> changed_;
   std::vector<double> start_;   // impulses
   std::vector<double> center_;  // impulses that softness pulls to
   std::vector<Status> status_;
   std::vector<Status> settled_status_;
   std::vector<double> settled_;
   std::vector<double> held_;  // bounds of friction
+  FreeFactor steady_;         // of the free rows, while friction's bounds stay
+  std::vector<unsigned char> marks_;
   std::vector<double> before_;
   std::vector<double> left_before_;
   std::vector<int> free_;

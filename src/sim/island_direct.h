@@ -96,6 +96,7 @@ class IslandDirect {
     double most = 0;
     bool loop = false;
     BoxSolver::Status guess = BoxSolver::unknown;  // where it stood in the round before
+    double likely = 0;                             // its impulse then
   };
 
   bool build_forest(const IslandPools& pools);

@@ -11,6 +11,20 @@ namespace {
 
 Spatial pull_of(const btVector3& linear, const btVector3& angular) { return {from_bt(linear), from_bt(angular)}; }
 
+BoxSolver::Status in_box(TreeRow::Status status) {
+  return status == TreeRow::outer      ? BoxSolver::unknown
+         : status == TreeRow::active   ? BoxSolver::free
+         : status == TreeRow::at_lower ? BoxSolver::at_lower
+                                       : BoxSolver::at_upper;
+}
+
+TreeRow::Status in_tree(BoxSolver::Status status) {
+  return status == BoxSolver::unknown    ? TreeRow::outer
+         : status == BoxSolver::free     ? TreeRow::active
+         : status == BoxSolver::at_lower ? TreeRow::at_lower
+                                         : TreeRow::at_upper;
+}
+
 }  // namespace
 
 void IslandDirect::add_contact(btSolverConstraint& row, int normal, double most) {
@@ -22,7 +36,7 @@ void IslandDirect::add_contact(btSolverConstraint& row, int normal, double most)
   out.eases = step > 0 ? 1 / step : 0;
   out.target = step > 0 ? static_cast<double>(row.m_rhs) / step : 0;
   out.softness = step > 0 ? static_cast<double>(row.m_cfm) / step : 0;
-  out.impulse = static_cast<double>(row.m_appliedImpulse);
+  out.impulse = out.likely = static_cast<double>(row.m_appliedImpulse);
   out.lower = static_cast<double>(row.m_lowerLimit);
   out.upper = static_cast<double>(row.m_upperLimit);
   out.normal = normal;
@@ -75,10 +89,8 @@ void IslandDirect::collect_axes() {
     out.impulse = row.impulse;
     out.lower = row.lower;
     out.upper = row.upper;
-    out.guess = row.guess == TreeRow::outer      ? BoxSolver::unknown
-                : row.guess == TreeRow::active   ? BoxSolver::free
-                : row.guess == TreeRow::at_lower ? BoxSolver::at_lower
-                                                 : BoxSolver::at_upper;
+    out.guess = in_box(row.guess);
+    out.likely = row.likely;
     outer_.push_back(out);
   }
 }
@@ -189,15 +201,18 @@ double IslandDirect::solve_outer() {
         row.normal,
         row.friction,
         row.most,
-        row.guess};
+        row.guess,
+        row.likely - row.begun};
   }
   const double missed = box_.solve(kOuterTolerance);
   for (int i = 0; i < box_.size(); ++i) {
     OuterRow& row = outer_[at(i)];
-    row.impulse = box_.row(i).impulse;
+    row.impulse = row.likely = box_.row(i).impulse;
     row.guess = box_.status(i);
     const double change = row.impulse - row.begun;
     if (row.axis != nullptr) {
+      row.axis->guess = in_tree(row.guess);
+      row.axis->likely = row.likely;
       system_.push(*row.axis, change);
     } else {
       load(row, change);

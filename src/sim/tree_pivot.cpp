@@ -136,11 +136,13 @@ void TreeRows::take_state(Stair& s) {
 
 void TreeRows::give_up(Stair& s) {
   s.outer = true;
-  for (int i = 0; i < s.count; ++i) {
-    TreeRow& row = row_of(s, i);
-    row.status = TreeRow::outer;
-    push(row, std::clamp(row.impulse, row.lower, row.upper) - row.impulse);
-  }
+  for (int i = 0; i < s.count; ++i) hand_over(row_of(s, i));
+}
+
+void TreeRows::hand_over(TreeRow& row) {
+  row.status = TreeRow::outer;
+  row.likely = std::clamp(row.impulse, row.lower, row.upper);
+  push(row, row.likely - row.impulse);
 }
 
 // The state that a staircase's impulses and rates ask for.
@@ -301,9 +303,7 @@ int TreeRows::give_up_broken(int first, int last) {
   }
   for (int i = first; i < last; ++i) {
     for (TreeRow& row : rows(i)) {
-      if (!breaks(row)) continue;
-      row.status = TreeRow::outer;
-      push(row, std::clamp(row.impulse, row.lower, row.upper) - row.impulse);
+      if (breaks(row)) hand_over(row);
     }
   }
   return broken;

@@ -25,6 +25,7 @@ struct TreeRow {
   Mark mark = other;  ///< Tells the rows of an axis apart, from step to step; at most one of each hard kind.
   Status status = active;
   Status guess = outer;  ///< Of a row given up: where it may come to stand; outer: as its impulse says.
+  double likely = 0;     ///< Of a row given up: an impulse to search from.
 
   bool hard() const { return softness == 0; }
   bool bounded() const;
@@ -112,6 +113,7 @@ class TreeRows {
   int reached(const Stair& s) const;
   void take_state(Stair& s);
   void give_up(Stair& s);
+  void hand_over(TreeRow& row);
   int wanted(const Stair& s) const;
   int look(int first, int last);
   bool breaks(const TreeRow& row) const;

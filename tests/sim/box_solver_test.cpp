@@ -72,6 +72,14 @@ TEST(BoxSolver, MeetsEveryLawOfRandomProblems) {
     }
     EXPECT_LE(box.solve(1e-7), 1e-5) << seed;
     EXPECT_LT(missed(box, left, begun), 1e-5) << seed;
+    // the same from elsewhere, with wrong guesses of where rows stand
+    for (int i = 0; i < n; ++i) {
+      box.row(i).impulse = begun[static_cast<std::size_t>(i)];
+      box.row(i).ahead = draw(-3, 3);
+      box.row(i).guess = i % 2 == 0 ? BoxSolver::at_lower : BoxSolver::free;
+    }
+    EXPECT_LE(box.solve(1e-7), 1e-5) << seed;
+    EXPECT_LT(missed(box, left, begun), 1e-5) << seed;
   }
 }
 

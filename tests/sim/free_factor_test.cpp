@@ -1,0 +1,77 @@
+// Rows chosen and let go, over and over: each solution against the matrix itself.
+#include "sim/free_factor.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <random>
+#include <vector>
+
+namespace limber {
+namespace {
+
+// G·G' + a little; row `hollow` and its column are zeros
+std::vector<double> positive_matrix(int n, int stride, std::mt19937& generator, int hollow) {
+  std::uniform_real_distribution<double> draw(-1, 1);
+  const auto at = [&](int i, int k) { return static_cast<std::size_t>(i * stride + k); };
+  std::vector<double> g(static_cast<std::size_t>(n * stride));
+  for (double& x : g) x = draw(generator);
+  std::vector<double> out(g.size(), 0);
+  for (int i = 0; i < n; ++i) {
+    for (int k = 0; k < n; ++k) {
+      if (i == hollow || k == hollow) continue;
+      if (i == k) out[at(i, k)] = 0.1;
+      for (int m = 0; m < n; ++m) out[at(i, k)] += g[at(i, m)] * g[at(k, m)];
+    }
+  }
+  return out;
+}
+
+TEST(FreeFactor, SolvesForWhateverRowsAreChosen) {
+  constexpr int kRows = 15;
+  constexpr int kStride = 16;
+  constexpr int kHollow = 7;
+  std::mt19937 generator(3);
+  const std::vector<double> matrix = positive_matrix(kRows, kStride, generator, kHollow);
+  FreeFactor factor;
+  factor.start(matrix, kStride);
+  std::vector<unsigned char> free(kRows, 0);
+  int refused = 0;
+  for (int round = 0; round < 400; ++round) {
+    // few change at a time, so that much is kept
+    for (unsigned change = generator() % 4; change > 0; --change) free[generator() % kRows] ^= 1;
+    const bool positive = factor.choose(free, kRows);
+    EXPECT_EQ(positive, free[kHollow] == 0) << round;
+    refused += positive ? 0 : 1;
+    if (!positive) continue;
+    const std::vector<int> rows(factor.rows().begin(), factor.rows().end());
+    EXPECT_EQ(static_cast<long>(rows.size()), std::count(free.begin(), free.end(), 1)) << round;
+    std::vector<double> missing;
+    for (const int row : rows) missing.push_back(std::sin(row + round));
+    std::vector<double> impulses = missing;
+    factor.solve(impulses);
+    for (std::size_t i = 0; i < rows.size(); ++i) {
+      double rate = 0;
+      for (std::size_t k = 0; k < rows.size(); ++k) {
+        rate += matrix[static_cast<std::size_t>(rows[i] * kStride + rows[k])] * impulses[k];
+      }
+      EXPECT_NEAR(rate, missing[i], 1e-9) << "round " << round << ", row " << rows[i];
+    }
+  }
+  EXPECT_GT(refused, 0);
+}
+
+TEST(FreeFactor, ChoosesNoMoreThanItMay) {
+  const std::vector<double> matrix{2, 1, 1, 2};
+  FreeFactor factor;
+  factor.start(matrix, 2);
+  EXPECT_FALSE(factor.choose(std::vector<unsigned char>{1, 1}, 1));
+  ASSERT_TRUE(factor.choose(std::vector<unsigned char>{0, 1}, 1));
+  std::vector<double> one{3};
+  factor.solve(one);
+  EXPECT_DOUBLE_EQ(one[0], 1.5);
+}
+
+}  // namespace
+}  // namespace limber
