@@ -54,7 +54,8 @@ TEST(FreeFactor, SolvesForWhateverRowsAreChosen) {
     for (std::size_t i = 0; i < rows.size(); ++i) {
       double rate = 0;
       for (std::size_t k = 0; k < rows.size(); ++k) {
-        rate += matrix[static_cast<std::size_t>(rows[i] * kStride + rows[k])] * impulses[k];
+        const int place = rows[i] * kStride + rows[k];
+        rate += matrix[static_cast<std::size_t>(place)] * impulses[k];
       }
       EXPECT_NEAR(rate, missing[i], 1e-9) << "round " << round << ", row " << rows[i];
     }
