@@ -47,8 +47,8 @@ TEST(FreeFactor, SolvesForWhateverRowsAreChosen) {
     if (!positive) continue;
     const std::vector<int> rows(factor.rows().begin(), factor.rows().end());
     EXPECT_EQ(static_cast<long>(rows.size()), std::count(free.begin(), free.end(), 1)) << round;
-    std::vector<double> missing;
-    for (const int row : rows) missing.push_back(std::sin(1.0 * row + round));
+    std::vector<double> missing(rows.size());
+    for (std::size_t i = 0; i < rows.size(); ++i) missing[i] = std::sin(1.0 * rows[i] + round);
     std::vector<double> impulses = missing;
     factor.solve(impulses);
     for (std::size_t i = 0; i < rows.size(); ++i) {
