@@ -14,7 +14,10 @@ namespace {
 // G·G' + a little; row `hollow` and its column are zeros
 std::vector<double> positive_matrix(int n, int stride, std::mt19937& generator, int hollow) {
   std::uniform_real_distribution<double> draw(-1, 1);
-  const auto at = [&](int i, int k) { return static_cast<std::size_t>(i * stride + k); };
+  const auto at = [&](int i, int k) {
+    const int place = i * stride + k;
+    return static_cast<std::size_t>(place);
+  };
   std::vector<double> g(static_cast<std::size_t>(n * stride));
   for (double& x : g) x = draw(generator);
   std::vector<double> out(g.size(), 0);
