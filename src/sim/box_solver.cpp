@@ -87,17 +87,11 @@ double BoxSolver::missed() {
   return most;
 }
 
-void BoxSolver::keep_best() {
+double BoxSolver::take_missed() {
   recenter();
   const double miss = missed();
-  if (!(miss < least_missed_)) return;
-  least_missed_ = miss;
-  for (int i = 0; i < size(); ++i) best_[nth(i)] = row(i).impulse;
-}
-
-void BoxSolver::take_best() {
-  for (int i = 0; i < size(); ++i) change_to(i, best_[nth(i)]);
-  respond();
+  if (miss < least_missed_) least_missed_ = miss;
+  return miss;
 }
 
 void BoxSolver::read_statuses() {
@@ -268,9 +262,7 @@ bool BoxSolver::pivot(double tolerance, int exchanges) {
     if (!solve_free()) return false;
     const int broken = exchange(tolerance, patience == 0);
     if (broken == 0) {
-      recenter();
-      const double miss = missed();
-      keep_best();
+      const double miss = take_missed();
       if (least_missed_ <= tolerance) return true;
       if (miss > 0.7 * before) return false;
       before = miss;
@@ -293,12 +285,11 @@ double BoxSolver::solve(double tolerance) {
   start_.resize(n);
   center_.resize(n);
   status_.resize(n);
-  best_.resize(n);
   settled_.resize(n);
   held_.resize(n);
   frozen_ = false;
   least_missed_ = 1e300;
-  for (std::size_t i = 0; i < n; ++i) start_[i] = best_[i] = rows_[i].impulse;
+  for (std::size_t i = 0; i < n; ++i) start_[i] = rows_[i].impulse;
   eases_.resize(n);
   for (int i = 0; i < size(); ++i) {
     response(i, i) *= 1 + kSoftness;
@@ -327,7 +318,7 @@ void BoxSolver::search(double tolerance) {
   for (int i = 0; i < size(); ++i) change(i, row(i).ahead);
   respond();
   for (int i = 0; i < kSweeps; ++i) sweep();
-  keep_best();
+  take_missed();
   if (least_missed_ <= tolerance) return;
   if (settle_friction(tolerance)) {
     if (frozen_) agree_at_last(tolerance);

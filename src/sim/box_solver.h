@@ -59,8 +59,7 @@ class BoxSolver {
   void respond();
   void sweep();
   double missed();
-  void keep_best();
-  void take_best();
+  double take_missed();
   void read_statuses();
   bool pivot(double tolerance, int exchanges);
   int exchange(double tolerance, bool only_last);
@@ -117,7 +116,6 @@ class BoxSolver {
   std::vector<double> factor_;
   std::vector<int> exchanged_;  // line of the factor that came in each one's place
   std::vector<double> step_;
-  std::vector<double> best_;
   std::vector<double> cover_;  // added to what is left, times what of the path is left to go
   std::vector<double> along_;  // of impulses and of what is left, per way along the path
   std::vector<double> left_along_;

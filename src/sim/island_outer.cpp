@@ -207,7 +207,8 @@ double IslandDirect::solve_outer() {
   const double missed = box_.solve(kOuterTolerance);
   for (int i = 0; i < box_.size(); ++i) {
     OuterRow& row = outer_[at(i)];
-    row.impulse = row.likely = box_.row(i).impulse;
+    row.impulse = box_.row(i).impulse;
+    row.likely = std::isfinite(row.impulse) ? row.impulse : row.begun;
     row.guess = box_.status(i);
     const double change = row.impulse - row.begun;
     if (row.axis != nullptr) {
