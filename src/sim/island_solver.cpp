@@ -67,8 +67,19 @@ btScalar IslandSolver::solveGroupCacheFriendlyIterations(btCollisionObject** bod
     if (direct_.solve(pools, info)) return 0;
     convert_all(constraints, constraint_count, info);
   }
-  return btSequentialImpulseConstraintSolver::solveGroupCacheFriendlyIterations(
+  contacts_.begin(m_tmpSolverBodyPool, m_tmpSolverContactConstraintPool, m_tmpSolverContactFrictionConstraintPool);
+  const btScalar rest = btSequentialImpulseConstraintSolver::solveGroupCacheFriendlyIterations(
       bodies, body_count, manifolds, manifold_count, constraints, constraint_count, info, drawer);
+  contacts_.finish();
+  return rest;
+}
+
+void IslandSolver::solveGroupCacheFriendlySplitImpulseIterations(btCollisionObject**, int, btPersistentManifold**, int,
+                                                                 btTypedConstraint**, int,
+                                                                 const btContactSolverInfo& info, btIDebugDraw*) {
+  for (int i = 0; i < info.m_numIterations; ++i) {
+    if (contacts_.push_apart() <= info.m_leastSquaresResidualThreshold) return;
+  }
 }
 
 // Rows of joints that are planned already.
@@ -192,19 +203,27 @@ btScalar IslandSolver::sweep_joints() {
   return largest;
 }
 
-btScalar IslandSolver::solveSingleIteration(int iteration, btCollisionObject** bodies, int body_count,
-                                            btPersistentManifold** manifolds, int manifold_count,
-                                            btTypedConstraint** /*constraints*/, int /*constraint_count*/,
-                                            const btContactSolverInfo& info, btIDebugDraw* drawer) {
+// Rows against rolling, as Bullet sweeps them.
+btScalar IslandSolver::sweep_rolling() {
+  btScalar largest = 0;
+  for (int i = 0; i < m_tmpSolverContactRollingFrictionConstraintPool.size(); ++i) {
+    btSolverConstraint& row = m_tmpSolverContactRollingFrictionConstraintPool[i];
+    const btScalar pressing = contacts_.impulse(row.m_frictionIndex);
+    if (!(pressing > 0)) continue;
+    row.m_upperLimit = std::min(row.m_friction * pressing, row.m_friction);
+    row.m_lowerLimit = -row.m_upperLimit;
+    const btScalar change = resolveSingleConstraintRowGeneric(m_tmpSolverBodyPool[row.m_solverBodyIdA],
+                                                              m_tmpSolverBodyPool[row.m_solverBodyIdB], row);
+    largest = std::max(largest, change * change);
+  }
+  return largest;
+}
+
+btScalar IslandSolver::solveSingleIteration(int iteration, btCollisionObject**, int, btPersistentManifold**, int,
+                                            btTypedConstraint**, int, const btContactSolverInfo& info, btIDebugDraw*) {
   const btScalar joints = sweep_joints();
-  if (m_tmpSolverContactConstraintPool.size() == 0) return joints;
-  // Bullet's own iteration does the contacts: it sees no joint rows while they are done
-  const int rows = m_tmpSolverNonContactConstraintPool.size();
-  m_tmpSolverNonContactConstraintPool.resizeNoInitialize(0);
-  const btScalar contacts = btSequentialImpulseConstraintSolver::solveSingleIteration(
-      iteration, bodies, body_count, manifolds, manifold_count, nullptr, 0, info, drawer);
-  m_tmpSolverNonContactConstraintPool.resizeNoInitialize(rows);
-  return std::max(joints, contacts);
+  if (iteration >= info.m_numIterations) return joints;
+  return std::max({joints, contacts_.sweep(), sweep_rolling()});
 }
 
 btScalar IslandSolver::solveGroupCacheFriendlyFinish(btCollisionObject** bodies, int body_count,

@@ -10,6 +10,7 @@
 #include "sim/broadphase.h"
 #include "sim/bullet.h"
 #include "sim/bullet_memory.h"
+#include "sim/contact_sweep.h"
 #include "sim/island_direct.h"
 #include "sim/joint_block.h"
 #include "sim/joint_constraint.h"
@@ -42,6 +43,10 @@ class IslandSolver : public btSequentialImpulseConstraintSolver {
                                              btPersistentManifold** manifolds, int manifold_count,
                                              btTypedConstraint** constraints, int constraint_count,
                                              const btContactSolverInfo& info, btIDebugDraw* drawer) override;
+  void solveGroupCacheFriendlySplitImpulseIterations(btCollisionObject** bodies, int body_count,
+                                                     btPersistentManifold** manifolds, int manifold_count,
+                                                     btTypedConstraint** constraints, int constraint_count,
+                                                     const btContactSolverInfo& info, btIDebugDraw* drawer) override;
   btScalar solveSingleIteration(int iteration, btCollisionObject** bodies, int body_count,
                                 btPersistentManifold** manifolds, int manifold_count, btTypedConstraint** constraints,
                                 int constraint_count, const btContactSolverInfo& info, btIDebugDraw* drawer) override;
@@ -54,6 +59,7 @@ class IslandSolver : public btSequentialImpulseConstraintSolver {
   void convert_rows(JointConstraint& joint, btSolverConstraint* rows, int count, const btContactSolverInfo& info);
   JointBlock& add_rows(const btSolverConstraint* rows, int count, bool bounded, int locked);
   btScalar sweep_joints();
+  btScalar sweep_rolling();
 
   struct JointRows {  // of one joint: `scalar` rows from `first` on, then those of the block
     int first;
@@ -63,6 +69,7 @@ class IslandSolver : public btSequentialImpulseConstraintSolver {
     JointBlock block;
   };
   btAlignedObjectArray<JointRows> joints_;
+  ContactSweep contacts_;
   IslandDirect direct_;
   bool direct_wanted_ = false;
   bool direct_here_ = false;  // in the island at hand

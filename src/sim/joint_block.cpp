@@ -28,18 +28,6 @@ void apply(const btSolverConstraint& row, float impulse, PairVelocity& v) {
   v.angular_b += lanes(row.m_angularComponentB) * impulse;
 }
 
-// Sums of x, y, z of four vectors.
-Lanes totals(const Lanes& a, const Lanes& b, const Lanes& c, const Lanes& d) {
-  const Lanes ab_low = __builtin_shufflevector(a, b, 0, 4, 1, 5);  // a0 b0 a1 b1
-  const Lanes cd_low = __builtin_shufflevector(c, d, 0, 4, 1, 5);
-  const Lanes ab_high = __builtin_shufflevector(a, b, 2, 6, 3, 7);  // a2 b2 a3 b3
-  const Lanes cd_high = __builtin_shufflevector(c, d, 2, 6, 3, 7);
-  const Lanes first = __builtin_shufflevector(ab_low, cd_low, 0, 1, 4, 5);
-  const Lanes second = __builtin_shufflevector(ab_low, cd_low, 2, 3, 6, 7);
-  const Lanes third = __builtin_shufflevector(ab_high, cd_high, 0, 1, 4, 5);
-  return (first + second) + third;
-}
-
 }  // namespace
 
 btScalar solve_row(const btSolverConstraint& row, PairVelocity& v) {
@@ -137,8 +125,9 @@ btScalar JointBlock::solve_locked(PairVelocity& v) {
   // residuals of the locked rows, and what they alone would give
   Lanes rates[8];
   for (int i = 0; i < 8; ++i) rates[i] = i < kLocked ? rate(rows_[i], v) : zero();
-  const Lanes residual[2] = {wanted_[0] - soft_[0] * impulse_[0] - totals(rates[0], rates[1], rates[2], rates[3]),
-                             wanted_[1] - soft_[1] * impulse_[1] - totals(rates[4], rates[5], rates[6], rates[7])};
+  const Lanes residual[2] = {
+      wanted_[0] - soft_[0] * impulse_[0] - sums_of_three(rates[0], rates[1], rates[2], rates[3]),
+      wanted_[1] - soft_[1] * impulse_[1] - sums_of_three(rates[4], rates[5], rates[6], rates[7])};
   Lanes change[2] = {inverse_[0][0] * residual[0][0], inverse_[0][1] * residual[0][0]};
   for (int i = 1; i < kLocked; ++i) {
     change[0] += inverse_[i][0] * residual[i / 4][i % 4];

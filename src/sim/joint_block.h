@@ -18,7 +18,19 @@ inline Lanes lanes(const btVector3& v) {
 }
 inline void put(const Lanes& l, btVector3& v) { std::memcpy(v.m_floats, &l, sizeof l); }
 
-/// Change of velocity of a joint's two bodies while its rows are swept.
+/// x + y + z of four vectors, in that order.
+inline Lanes sums_of_three(const Lanes& a, const Lanes& b, const Lanes& c, const Lanes& d) {
+  const Lanes ab_low = __builtin_shufflevector(a, b, 0, 4, 1, 5);  // a0 b0 a1 b1
+  const Lanes cd_low = __builtin_shufflevector(c, d, 0, 4, 1, 5);
+  const Lanes ab_high = __builtin_shufflevector(a, b, 2, 6, 3, 7);  // a2 b2 a3 b3
+  const Lanes cd_high = __builtin_shufflevector(c, d, 2, 6, 3, 7);
+  const Lanes first = __builtin_shufflevector(ab_low, cd_low, 0, 1, 4, 5);
+  const Lanes second = __builtin_shufflevector(ab_low, cd_low, 2, 3, 6, 7);
+  const Lanes third = __builtin_shufflevector(ab_high, cd_high, 0, 1, 4, 5);
+  return (first + second) + third;
+}
+
+/// Change of velocity of two bodies while the rows between them are swept.
 struct PairVelocity {
   PairVelocity(const btSolverBody& a, const btSolverBody& b)
       : linear_a(lanes(a.m_deltaLinearVelocity)),
@@ -36,6 +48,22 @@ struct PairVelocity {
 
   Lanes linear_a, angular_a, linear_b, angular_b;
   Lanes mass_a, mass_b;  ///< Inverse masses.
+};
+
+/// The same of the velocity that only pushes them apart.
+struct PairPush : PairVelocity {
+  PairPush(const btSolverBody& a, const btSolverBody& b) : PairVelocity(a, b) {
+    linear_a = lanes(a.m_pushVelocity);
+    angular_a = lanes(a.m_turnVelocity);
+    linear_b = lanes(b.m_pushVelocity);
+    angular_b = lanes(b.m_turnVelocity);
+  }
+  void store(btSolverBody& a, btSolverBody& b) const {
+    put(linear_a, a.m_pushVelocity);
+    put(angular_a, a.m_turnVelocity);
+    put(linear_b, b.m_pushVelocity);
+    put(angular_b, b.m_turnVelocity);
+  }
 };
 
 /// One sequential-impulse step of a single row; returns the squared change of its impulse.
