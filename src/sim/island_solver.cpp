@@ -5,9 +5,18 @@
 #include <cstring>
 #include <utility>
 
+#include "base/prefetch.h"
+#include "sim/dispatcher.h"
 #include "sim/gyroscope.h"
 
 namespace limber {
+namespace {
+
+/// So many manifolds ahead their ends are asked for, and then what those tell of.
+constexpr int kEndsAhead = 12;
+constexpr int kPointsAhead = 6;
+
+}  // namespace
 
 void IslandSolver::convertBodies(btCollisionObject** bodies, int count, const btContactSolverInfo& info) {
   btSequentialImpulseConstraintSolver::convertBodies(bodies, count, info);
@@ -21,6 +30,19 @@ void IslandSolver::convertBodies(btCollisionObject** bodies, int count, const bt
                                           static_cast<double>(info.m_timeStep));
     btSolverBody& solver = m_tmpSolverBodyPool[body->getCompanionId()];
     solver.m_externalTorqueImpulse += axes * to_bt(change) * body->getAngularFactor();
+  }
+}
+
+void IslandSolver::convertContacts(btPersistentManifold** manifolds, int count, const btContactSolverInfo& info) {
+  for (int i = 0; i < count; ++i) {
+    if (i + kEndsAhead < count) prefetch_end(*manifolds[i + kEndsAhead]);
+    if (i + kPointsAhead < count) {
+      const btPersistentManifold& next = *manifolds[i + kPointsAhead];
+      prefetch_points(next);
+      prefetch(next.getBody0(), sizeof(btRigidBody));
+      prefetch(next.getBody1(), sizeof(btRigidBody));
+    }
+    convertContact(manifolds[i], info);
   }
 }
 

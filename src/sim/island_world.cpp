@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "base/prefetch.h"
+#include "sim/dispatcher.h"
 #include "sim/health.h"
 
 namespace limber {
@@ -15,6 +16,8 @@ constexpr int kBatch = 16;
 constexpr int kTeamWork = 64;
 /// So many objects ahead their memory is asked for.
 constexpr int kAhead = 2;
+/// And contact manifolds, of which the end is looked at alone.
+constexpr int kManifoldsAhead = 8;
 /// Contact pairs in Bullet's pool.
 constexpr int kPool = 64;
 
@@ -37,14 +40,6 @@ void leave_gyroscopic_torque_to_us(btRigidBody& body) {
   body.setFlags(body.getFlags() & ~(BT_ENABLE_GYROSCOPIC_FORCE_EXPLICIT | BT_ENABLE_GYROSCOPIC_FORCE_IMPLICIT_WORLD |
                                     BT_ENABLE_GYROSCOPIC_FORCE_IMPLICIT_BODY));
 }
-
-// Bullet's, but that a pair which was made may collide
-class Dispatcher : public btCollisionDispatcher {
- public:
-  BT_DECLARE_ALIGNED_ALLOCATOR();
-  using btCollisionDispatcher::btCollisionDispatcher;
-  bool needsCollision(const btCollisionObject*, const btCollisionObject*) override { return true; }
-};
 
 }  // namespace
 
@@ -236,7 +231,9 @@ void IslandWorld::sort_joints() {
 void IslandWorld::sort_contacts() {
   btDispatcher* dispatch = getDispatcher();
   touches_.resizeNoInitialize(0);
-  for (int i = 0; i < dispatch->getNumManifolds(); ++i) {
+  const int manifolds = dispatch->getNumManifolds();
+  for (int i = 0; i < manifolds; ++i) {
+    if (i + kManifoldsAhead < manifolds) prefetch_end(*dispatch->getManifoldByIndexInternal(i + kManifoldsAhead));
     btPersistentManifold* manifold = dispatch->getManifoldByIndexInternal(i);
     if (manifold->getNumContacts() == 0) continue;
     const btCollisionObject* a = manifold->getBody0();

@@ -38,6 +38,7 @@ class IslandSolver : public btSequentialImpulseConstraintSolver {
 
  protected:
   void convertBodies(btCollisionObject** bodies, int count, const btContactSolverInfo& info) override;
+  void convertContacts(btPersistentManifold** manifolds, int count, const btContactSolverInfo& info) override;
   void convertJoints(btTypedConstraint** constraints, int count, const btContactSolverInfo& info) override;
   btScalar solveGroupCacheFriendlyIterations(btCollisionObject** bodies, int body_count,
                                              btPersistentManifold** manifolds, int manifold_count,

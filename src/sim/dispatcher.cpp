@@ -1,0 +1,52 @@
+// What a pair looks at hangs together by pointers, so it is asked for in three goes, each when the one before is there.
+#include "sim/dispatcher.h"
+
+namespace limber {
+namespace {
+
+/// So many pairs ahead each go is made.
+constexpr int kHandles = 16;
+constexpr int kParts = 10;
+constexpr int kPoints = 5;
+
+btCollisionObject& object(const btBroadphaseProxy& proxy) {
+  return *static_cast<btCollisionObject*>(proxy.m_clientObject);
+}
+
+[[gnu::always_inline]] inline void ask_for_handles(const btBroadphasePair& pair) {
+  prefetch(pair.m_pProxy0, 1);
+  prefetch(pair.m_pProxy1, 1);
+  prefetch(pair.m_algorithm, sizeof(btCollisionAlgorithm) + 2 * sizeof(void*));
+}
+
+[[gnu::always_inline]] inline void ask_for_parts(const btBroadphasePair& pair, btManifoldArray& manifolds) {
+  constexpr std::size_t kUsed = 320;  // of an object: where it is, its shape, what it is like
+  prefetch(&object(*pair.m_pProxy0), kUsed);
+  prefetch(&object(*pair.m_pProxy1), kUsed);
+  manifolds.resizeNoInitialize(0);
+  if (pair.m_algorithm != nullptr) pair.m_algorithm->getAllContactManifolds(manifolds);
+  for (int i = 0; i < manifolds.size(); ++i) prefetch_end(*manifolds[i]);
+}
+
+[[gnu::always_inline]] inline void ask_for_points(const btBroadphasePair& pair, btManifoldArray& manifolds) {
+  prefetch(object(*pair.m_pProxy0).getCollisionShape(), sizeof(btBoxShape));
+  prefetch(object(*pair.m_pProxy1).getCollisionShape(), sizeof(btBoxShape));
+  manifolds.resizeNoInitialize(0);
+  if (pair.m_algorithm != nullptr) pair.m_algorithm->getAllContactManifolds(manifolds);
+  for (int i = 0; i < manifolds.size(); ++i) prefetch_points(*manifolds[i]);
+}
+
+}  // namespace
+
+void Dispatcher::dispatchAllCollisionPairs(btOverlappingPairCache* cache, const btDispatcherInfo& info, btDispatcher*) {
+  btBroadphasePairArray& pairs = cache->getOverlappingPairArray();
+  const int count = pairs.size();
+  for (int i = 0; i < count; ++i) {
+    if (i + kHandles < count) ask_for_handles(pairs[i + kHandles]);
+    if (i + kParts < count) ask_for_parts(pairs[i + kParts], manifolds_);
+    if (i + kPoints < count) ask_for_points(pairs[i + kPoints], manifolds_);
+    getNearCallback()(pairs[i], *this, info);
+  }
+}
+
+}  // namespace limber
