@@ -111,7 +111,7 @@ Json bullet_phases(BenchArms& arms, int ticks) {
     const BulletPhaseCounter counter;
     arms.tick();
     const BulletPhases& p = counter.phases();
-    const double sum = p.broadphase + p.narrowphase + p.islands + p.solver + p.motion;
+    const double sum = p.broadphase + p.narrowphase + p.islands + p.solver;
     if (i > 0 && sum >= least) continue;
     best = p;
     least = sum;
@@ -119,8 +119,7 @@ Json bullet_phases(BenchArms& arms, int ticks) {
   return {{"broadphase", Samples::in_microseconds(best.broadphase)},
           {"narrowphase", Samples::in_microseconds(best.narrowphase)},
           {"islands", Samples::in_microseconds(best.islands)},
-          {"solver", Samples::in_microseconds(best.solver)},
-          {"motion", Samples::in_microseconds(best.motion)}};
+          {"solver", Samples::in_microseconds(best.solver)}};
 }
 
 }  // namespace

@@ -1,13 +1,30 @@
-// Helpers sleep between two rounds; within one, pieces are taken by counting down.
+// Helpers watch for the next round for a moment, then sleep; within one, pieces are taken by counting down.
 #include "base/team.h"
 
 #include <pthread.h>
 
 #include "base/check.h"
+#include "base/clock_seconds.h"
 
 namespace limber {
 
-Team::Team(int members) {
+namespace {
+
+/// So long a member looks for what it waits for before it sleeps, s: what one thread does between two rounds of a tick
+/// is mostly shorter, and to be woken takes about as long. Between ticks all sleep.
+constexpr double kWatch = 200e-6;
+
+void pause_a_moment() {
+#if defined(__x86_64__)
+  __builtin_ia32_pause();
+#endif
+}
+
+}  // namespace
+
+// Who watches on another's processor only keeps that one from its work.
+Team::Team(int members)
+    : members_(members), watches_(static_cast<unsigned>(members) <= std::thread::hardware_concurrency()) {
   LIMBER_CHECK(members >= 1 && members <= kMost);
   for (int member = 1; member < members; member++) {
     helpers_.emplace_back([this, member] { help(member); });
@@ -22,35 +39,65 @@ Team::~Team() {
   for (std::thread& helper : helpers_) helper.join();
 }
 
+void Team::rouse() {
+  round_++;
+  round_.notify_all();
+}
+
 void Team::share(int pieces, Call call, void* of) {
   if (pieces <= 0) return;
   call_ = call;
   of_ = of;
   open_.store(pieces, std::memory_order_relaxed);
   const std::uint32_t round = round_.load(std::memory_order_relaxed) + 1;
-  ticket_.store(static_cast<std::uint64_t>(round) << kPieceBits | static_cast<std::uint32_t>(pieces));
+  int first = 0;
+  for (int member = 0; member < members_; member++) {
+    Part& part = parts_[static_cast<std::size_t>(member)];
+    part.end = static_cast<int>(std::int64_t{pieces} * (member + 1) / members_);
+    part.ticket.store(static_cast<std::uint64_t>(round) << kPieceBits | static_cast<std::uint32_t>(part.end - first));
+    first = part.end;
+  }
   round_.store(round);
   if (pieces > 1) round_.notify_all();
   take_pieces(round, 0);
+  watch([&] { return open_.load() == 0; });
   for (int left = open_.load(); left != 0; left = open_.load()) open_.wait(left);
 }
 
 void Team::help(int member) {
   std::uint32_t seen = 0;
   while (!ends_) {
+    watch([&] { return round_.load() != seen; });
     round_.wait(seen);
     seen = round_.load();
     take_pieces(seen, member);
   }
 }
 
+// Until it is done, or the moment is over.
+template <class Done>
+void Team::watch(Done&& done) const {
+  if (!watches_ || done()) return;
+  const double end = clock_seconds() + kWatch;
+  do {
+    for (int i = 0; i < 16; i++) {
+      if (done()) return;
+      pause_a_moment();
+    }
+  } while (clock_seconds() < end);
+}
+
+// Its own part, then the others'.
 void Team::take_pieces(std::uint64_t round, int member) {
-  std::uint64_t ticket = ticket_.load();
-  while (ticket >> kPieceBits == round && static_cast<std::uint32_t>(ticket) != 0) {
-    if (!ticket_.compare_exchange_weak(ticket, ticket - 1)) continue;
-    call_(of_, static_cast<int>(static_cast<std::uint32_t>(ticket)) - 1, member);
-    if (open_.fetch_sub(1) == 1) open_.notify_one();
-    ticket = ticket_.load();
+  for (int i = 0; i < members_; i++) {
+    Part& part = parts_[static_cast<std::size_t>((member + i) % members_)];
+    std::uint64_t ticket = part.ticket.load();
+    while (ticket >> kPieceBits == round && static_cast<std::uint32_t>(ticket) != 0) {
+      if (!part.ticket.compare_exchange_weak(ticket, ticket - 1)) continue;
+      call_(of_, part.end - static_cast<int>(static_cast<std::uint32_t>(ticket)), member);
+      if (open_.fetch_sub(1) == 1) open_.notify_one();
+      ticket = part.ticket.load();
+    }
   }
 }
 

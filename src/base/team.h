@@ -1,7 +1,10 @@
-// Team: some threads that share out the pieces of one work; the caller is one of them.
+// Team: some threads that share out the pieces of one work; the caller is one of them. Each has a part of the pieces
+// that it does first, the same part of every work, so that what it will look at again is still in its cache; who is
+// done helps the others.
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <atomic>
 #include <cstdint>
 #include <memory>
@@ -21,10 +24,13 @@ class Team {
   Team(const Team&) = delete;
   Team& operator=(const Team&) = delete;
 
-  int members() const { return static_cast<int>(helpers_.size()) + 1; }
+  int members() const { return members_; }
 
-  /// Calls work(piece, member) once for each piece from 0 to pieces - 1, on whichever member is free (0: the caller),
-  /// and returns when all are done. Nothing is allocated. The work must not throw. [one thread at a time]
+  /// Soon there will be work: who sleeps wakes up meanwhile. [as run()]
+  void rouse();
+
+  /// Calls work(piece, member) once for each piece from 0 to pieces - 1, by a member each (0: the caller), and
+  /// returns when all are done. Nothing is allocated. The work must not throw. [one thread at a time]
   template <class Work>
   void run(int pieces, Work&& work) {
     share(
@@ -40,12 +46,21 @@ class Team {
   void share(int pieces, Call call, void* of);
   void help(int member);
   void take_pieces(std::uint64_t round, int member);
+  template <class Done>
+  void watch(Done&& done) const;
 
-  // the round's number above, how many of its pieces nobody has taken below: a latecomer can't take another round's
-  std::atomic<std::uint64_t> ticket_{0};
-  std::atomic<std::uint32_t> round_{0};  // what helpers sleep on
-  std::atomic<int> open_{0};             // pieces of this round that are not done
-  Call call_ = nullptr;                  // read only by who has taken a piece: the round can't end before
+  const int members_;
+  const bool watches_;  // whether each member has a processor to watch on
+  // A member's part of a round, in a line of the cache of its own.
+  struct alignas(64) Part {
+    // the round's number above, how many of the pieces nobody has taken below: a latecomer can't take another round's
+    std::atomic<std::uint64_t> ticket{0};
+    int end = 0;  // of its pieces; this and the work are read only by who has taken one: the round can't end before
+  };
+  std::array<Part, kMost> parts_;
+  alignas(64) std::atomic<std::uint32_t> round_{0};  // what helpers sleep on
+  alignas(64) std::atomic<int> open_{0};             // pieces of this round that are not done
+  Call call_ = nullptr;
   void* of_ = nullptr;
   std::atomic<bool> ends_{false};
   std::vector<std::thread> helpers_;

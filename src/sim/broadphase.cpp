@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <utility>
 
+#include "base/prefetch.h"
+
 namespace limber {
 namespace {
 
@@ -11,6 +13,8 @@ namespace {
 /// Among others that would cost more, since contacts are looked for with all that a box meets. What jumps by more than
 /// its own size will not jump on.
 constexpr btScalar kStepsAhead = 2;
+/// Of those whose neighbours are looked for, so many at a time; it changes no result.
+constexpr int kSearched = 16;
 
 }  // namespace
 
@@ -18,6 +22,7 @@ struct Broadphase::Proxy : btBroadphaseProxy {
   using btBroadphaseProxy::btBroadphaseProxy;
 
   btDbvtNode* leaf = nullptr;  // null: a plane
+  btDbvtVolume box{};          // the leaf's: which would be another place in memory
   bool moves = false;
   bool anew = false;          // who may collide with it has changed
   bool near = false;          // something was found around it lately
@@ -39,19 +44,18 @@ struct Broadphase::Proxy : btBroadphaseProxy {
   }
   // as a plane: is the other one so near to it that a contact can begin
   bool reaches(const Proxy& other) const {
-    const btDbvtVolume& box = other.leaf->volume;
-    return normal.dot(box.Center()) - distance - normal.absolute().dot(box.Extents()) <= other.reach;
+    return normal.dot(other.box.Center()) - distance - normal.absolute().dot(other.box.Extents()) <= other.reach;
   }
   bool meets(const Proxy& other) const {
     if (leaf == nullptr) return other.leaf != nullptr && reaches(other);
-    return other.leaf == nullptr ? other.reaches(*this) : Intersect(leaf->volume, other.leaf->volume);
+    return other.leaf == nullptr ? other.reaches(*this) : Intersect(box, other.box);
   }
 };
 
 // room for what is usual, so that nothing is allocated in a step
 struct Broadphase::Search {
   Search() {
-    found.reserve(std::size_t{8} * kPlaces);
+    found.reserve(std::size_t{8} * kSearched);
     stack.reserve(256);
   }
   std::vector<std::pair<Proxy*, Proxy*>> found;
@@ -70,6 +74,7 @@ void meet(const btDbvt& tree, const btDbvtVolume& box, std::vector<const btDbvtN
     stack.pop_back();
     if (!Intersect(node->volume, box)) continue;
     if (node->isinternal()) {
+      prefetch(node->childs[0], sizeof *node);  // the other one's turn comes first
       stack.push_back(node->childs[0]);
       stack.push_back(node->childs[1]);
     } else {
@@ -111,7 +116,8 @@ btBroadphaseProxy* Broadphase::createProxy(const btVector3& low, const btVector3
     const btCollisionObject& of = proxy->object();
     proxy->moves = !of.isStaticObject();
     proxy->reach = of.getCollisionShape()->getContactBreakingThreshold(gContactBreakingThreshold);
-    proxy->leaf = (proxy->moves ? moving_ : standing_).insert(btDbvtVolume::FromMM(low, high), proxy);
+    proxy->box = btDbvtVolume::FromMM(low, high);
+    proxy->leaf = (proxy->moves ? moving_ : standing_).insert(proxy->box, proxy);
   }
   mark(*proxy);
   make_room(++count_);
@@ -119,7 +125,7 @@ btBroadphaseProxy* Broadphase::createProxy(const btVector3& low, const btVector3
 }
 
 void Broadphase::make_room(int marked) {
-  const auto needed = static_cast<std::size_t>(ranges_of(marked));
+  const auto needed = static_cast<std::size_t>(ranges_of(marked, kSearched));
   if (searches_->size() < needed) searches_->resize(needed);
 }
 
@@ -155,8 +161,10 @@ bool Broadphase::look(btCollisionObject& object) {
   proxy.m_aabbMax = high + ahead;
   proxy.way = (proxy.m_aabbMin + proxy.m_aabbMax - before) / 2;
   const btDbvtVolume box = btDbvtVolume::FromMM(proxy.m_aabbMin, proxy.m_aabbMax);
-  return proxy.moves ? !proxy.leaf->volume.Contain(box) : NotEqual(proxy.leaf->volume, box);
+  return proxy.moves ? !proxy.box.Contain(box) : NotEqual(proxy.box, box);
 }
+
+void Broadphase::fetch(const btCollisionObject& object) { prefetch(object.getBroadphaseHandle(), sizeof(Proxy)); }
 
 void Broadphase::move(btBroadphaseProxy* of) {
   Proxy& proxy = *static_cast<Proxy*>(of);
@@ -172,6 +180,7 @@ void Broadphase::move(btBroadphaseProxy* of) {
   } else {
     standing_.update(proxy.leaf, box);
   }
+  proxy.box = box;
 }
 
 void Broadphase::setAabb(btBroadphaseProxy* proxy, const btVector3& low, const btVector3& high, btDispatcher*) {
@@ -198,9 +207,9 @@ void Broadphase::search_around(Proxy& proxy, Search& search) const {
     });
     return;
   }
-  meet<Proxy>(moving_, proxy.leaf->volume, search.stack, found);
+  meet<Proxy>(moving_, proxy.box, search.stack, found);
   if (!proxy.moves) return;
-  meet<Proxy>(standing_, proxy.leaf->volume, search.stack, found);
+  meet<Proxy>(standing_, proxy.box, search.stack, found);
   for (int i = 0; i < planes_.size(); i++) {
     if (planes_[i]->reaches(proxy)) found(*planes_[i]);
   }
@@ -232,15 +241,16 @@ void Broadphase::calculateOverlappingPairs(btDispatcher* dispatcher) {
   if (marked_.size() == 0) return;
   forget_parted(dispatcher);
   make_room(marked_.size());
-  share_out_places(team_, marked_.size(), [&](int range, int first, int end) {
-    search(first, end, (*searches_)[static_cast<std::size_t>(range)]);
-  });
+  share_out_places(
+      team_, marked_.size(),
+      [&](int range, int first, int end) { search(first, end, (*searches_)[static_cast<std::size_t>(range)]); },
+      kSearched);
   for (int i = 0; i < marked_.size(); i++) {
     if (marked_[i] == nullptr) continue;
     marked_[i]->marked = 0;
     marked_[i]->anew = marked_[i]->near = false;
   }
-  for (int range = 0; range < ranges_of(marked_.size()); range++) {
+  for (int range = 0; range < ranges_of(marked_.size(), kSearched); range++) {
     for (const auto& [a, b] : (*searches_)[static_cast<std::size_t>(range)].found) {
       a->near = b->near = true;
       pairs_.addOverlappingPair(a, b);

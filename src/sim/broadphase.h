@@ -34,6 +34,8 @@ class Broadphase : public btBroadphaseInterface {
 
   /// Has this one left its box, or was it moved though it stands? Then move() is to follow. [any thread, each another]
   static bool look(btCollisionObject& object);
+  /// Soon look() will be asked about it.
+  static void fetch(const btCollisionObject& object);
   void move(btBroadphaseProxy* proxy);
 
   btBroadphaseProxy* createProxy(const btVector3& low, const btVector3& high, int shape, void* object, int group,

@@ -20,10 +20,7 @@ constexpr Zone kZones[] = {{"updateAabbs", &BulletPhases::broadphase},
                            {"dispatchAllCollisionPairs", &BulletPhases::narrowphase},
                            {"calculateSimulationIslands", &BulletPhases::islands},
                            {"solveConstraints", &BulletPhases::solver},
-                           {"solveGroup", &BulletPhases::solver},
-                           {"predictUnconstraintMotion", &BulletPhases::motion},
-                           {"createPredictiveContacts", &BulletPhases::motion},
-                           {"integrateTransforms", &BulletPhases::motion}};
+                           {"solveGroup", &BulletPhases::solver}};
 
 // Bullet's hooks are bare functions
 struct Counting {

@@ -8,8 +8,7 @@ struct BulletPhases {
   double broadphase = 0;   ///< Bounding boxes and overlapping pairs.
   double narrowphase = 0;  ///< Contact points.
   double islands = 0;      ///< Who is joined to whom.
-  double solver = 0;       ///< Joints and contacts, set-up included.
-  double motion = 0;       ///< Predicting and integrating.
+  double solver = 0;       ///< Joints and contacts, set-up and motion included.
 };
 
 /// Counts while it lives; one at a time. Zones are entered tens of times a step, so what it counts is a little more

@@ -1,4 +1,4 @@
-// Islands: found by Bullet, sorted here by counting, solved batch by batch.
+// Islands: found here, sorted by counting, solved batch by batch.
 #include "sim/island_world.h"
 
 #include <algorithm>
@@ -10,20 +10,18 @@
 namespace limber {
 namespace {
 
-/// Islands are solved together until this many joints and contact pairs are in a batch; it changes no result.
+/// Islands are solved together until this many joints and contact pairs, or so many bodies, are in a batch; it changes
+/// no result.
 constexpr int kBatch = 16;
-/// Joints and contact pairs of a step that are worth waking others for; it changes no result.
-constexpr int kTeamWork = 64;
+constexpr int kBodies = 64;
+/// Joints, contact pairs and bodies of a step that are worth waking others for; it changes no result.
+constexpr int kTeamWork = 128;
 /// So many objects ahead their memory is asked for.
-constexpr int kAhead = 2;
+constexpr int kAhead = 8;
 /// And contact manifolds, of which the end is looked at alone.
 constexpr int kManifoldsAhead = 8;
 /// Contact pairs in Bullet's pool.
 constexpr int kPool = 64;
-
-int island_tag(const btCollisionObject& a, const btCollisionObject& b) {
-  return a.getIslandTag() >= 0 ? a.getIslandTag() : b.getIslandTag();
-}
 
 // Counts per island in start[1..] become starts, and cursor their copy.
 void accumulate(btAlignedObjectArray<int>& start, btAlignedObjectArray<int>& cursor) {
@@ -39,6 +37,10 @@ void zero(btAlignedObjectArray<int>& a, int size) {
 void leave_gyroscopic_torque_to_us(btRigidBody& body) {
   body.setFlags(body.getFlags() & ~(BT_ENABLE_GYROSCOPIC_FORCE_EXPLICIT | BT_ENABLE_GYROSCOPIC_FORCE_IMPLICIT_WORLD |
                                     BT_ENABLE_GYROSCOPIC_FORCE_IMPLICIT_BODY));
+}
+
+void end_tick(btTypedConstraint& joint) {
+  if (joint.getConstraintType() == JointConstraint::kType) static_cast<JointConstraint&>(joint).end_tick();
 }
 
 }  // namespace
@@ -93,27 +95,38 @@ void IslandWorld::step(double h, int substeps) {
     internalSingleStepSimulation(step_length);
   }
   first_ = last_ = false;
-  for_each(m_constraints, [](int, btTypedConstraint& constraint) {
-    if (constraint.getConstraintType() == JointConstraint::kType) static_cast<JointConstraint&>(constraint).end_tick();
+}
+
+void IslandWorld::refresh_joints() {
+  for_each(m_constraints, [](int, btTypedConstraint& joint) {
+    if (joint.getConstraintType() == JointConstraint::kType) static_cast<JointConstraint&>(joint).refresh();
   });
 }
 
 void IslandWorld::addConstraint(btTypedConstraint* constraint, bool disable_collisions) {
   const BulletMemory::Scope scope(memory);
+  joints_known_ = false;
   btDiscreteDynamicsWorld::addConstraint(constraint, disable_collisions);
   if (disable_collisions) look_anew(*constraint);
 }
 
 void IslandWorld::addRigidBody(btRigidBody* body) {
   const BulletMemory::Scope scope(memory);
+  joints_known_ = false;
   leave_gyroscopic_torque_to_us(*body);
   btDiscreteDynamicsWorld::addRigidBody(body);
 }
 
 void IslandWorld::addRigidBody(btRigidBody* body, int group, int mask) {
   const BulletMemory::Scope scope(memory);
+  joints_known_ = false;
   leave_gyroscopic_torque_to_us(*body);
   btDiscreteDynamicsWorld::addRigidBody(body, group, mask);
+}
+
+void IslandWorld::removeRigidBody(btRigidBody* body) {
+  joints_known_ = false;
+  btDiscreteDynamicsWorld::removeRigidBody(body);
 }
 
 void IslandWorld::set_apart(btCollisionObject& object, int group) {
@@ -127,6 +140,7 @@ void IslandWorld::removeConstraint(btTypedConstraint* constraint) {
   const int count = m_constraints.size();
   const int index = m_constraints.findLinearSearch(constraint);
   if (index == count) return;
+  joints_known_ = false;
   for (int i = index; i + 1 < count; ++i) m_constraints[i] = m_constraints[i + 1];
   m_constraints.pop_back();
   const BulletMemory::Scope scope(memory);
@@ -142,13 +156,9 @@ void IslandWorld::look_anew(btTypedConstraint& joint) {
   }
 }
 
-void IslandWorld::predictUnconstraintMotion(btScalar h) {
-  BT_PROFILE("predictUnconstraintMotion");
-  for_each(m_nonStaticRigidBodies, [&](int, btRigidBody& body) {
-    if (first_) body.applyGravity();
-    if (body.getLinearDamping() != 0 || body.getAngularDamping() != 0) body.applyDamping(h);
-  });
-}
+// Islands' own work, and that of what stands nobody's: solve_batch().
+void IslandWorld::predictUnconstraintMotion(btScalar) { ails_.store(false, std::memory_order_relaxed); }
+void IslandWorld::integrateTransforms(btScalar) {}
 
 void IslandWorld::createPredictiveContacts(btScalar) {}  // no continuous collision
 
@@ -156,75 +166,103 @@ void IslandWorld::updateAabbs() {
   BT_PROFILE("updateAabbs");
   const int count = m_collisionObjects.size();
   left_.resizeNoInitialize(count);
-  for_each(m_collisionObjects, [&](int i, btCollisionObject& object) { left_[i] = Broadphase::look(object); });
+  for_each(m_collisionObjects, [&](int i, btCollisionObject& object) {
+    if (i + kAhead / 2 < count) Broadphase::fetch(*m_collisionObjects[i + kAhead / 2]);
+    left_[i] = Broadphase::look(object);
+  });
   for (int i = 0; i < count; ++i) {
     if (left_[i]) broadphase->move(m_collisionObjects[i]->getBroadphaseHandle());
   }
 }
 
-void IslandWorld::integrateTransforms(btScalar h) {
-  BT_PROFILE("integrateTransforms");
-  ails_.store(false, std::memory_order_relaxed);
-  for_each(m_nonStaticRigidBodies, [&](int, btRigidBody& body) {
-    if (!body.isActive() || body.isStaticOrKinematicObject()) return;
-    btTransform moved;
-    body.predictIntegratedTransform(h, moved);
-    body.proceedToTransform(moved);
-    if (last_) body.clearForces();
-    if (ailment(body) != nullptr) ails_.store(true, std::memory_order_relaxed);
-  });
-}
-
 void IslandWorld::updateActivationState(btScalar) {}  // none sleeps
 
 void IslandWorld::solveConstraints(btContactSolverInfo& info) {
-  sort_bodies();
-  sort_joints();
   sort_contacts();
   gather_batches(info.m_minimumSolverBatchSize);
   solve_islands(info);
 }
 
+int IslandWorld::root_of(btAlignedObjectArray<int>& above, int place) {
+  while (above[place] != place) place = above[place] = above[above[place]];
+  return place;
+}
+
+void IslandWorld::unite(btAlignedObjectArray<int>& above, int a, int b) {
+  if (a >= 0 && b >= 0) above[root_of(above, a)] = root_of(above, b);
+}
+
+// Once they stand, no step has to go through all of them for it.
+void IslandWorld::learn_joints() {
+  const int count = m_nonStaticRigidBodies.size();
+  places_.resizeNoInitialize(getNumCollisionObjects());
+  for (int i = 0; i < places_.size(); ++i) places_[i] = -1;
+  joined_.resizeNoInitialize(count);
+  for (int i = 0; i < count; ++i) {
+    places_[m_nonStaticRigidBodies[i]->getWorldArrayIndex()] = joined_[i] = i;
+  }
+  ends_.resizeNoInitialize(m_constraints.size());
+  for (int i = 0; i < ends_.size(); ++i) {
+    ends_[i] = {place_of(m_constraints[i]->getRigidBodyA()), place_of(m_constraints[i]->getRigidBodyB())};
+    unite(joined_, ends_[i].a, ends_[i].b);
+  }
+  joints_known_ = true;
+}
+
+// Who is joined, or may meet.
+void IslandWorld::calculateSimulationIslands() {
+  BT_PROFILE("calculateSimulationIslands");
+  if (!joints_known_ || places_.size() != getNumCollisionObjects()) learn_joints();
+  above_.copyFromArray(joined_);
+  const btBroadphasePairArray& pairs = getPairCache()->getOverlappingPairArray();
+  for (int i = 0; i < pairs.size(); ++i) {
+    const auto place = [&](const btBroadphaseProxy* proxy) {
+      return place_of(*static_cast<const btCollisionObject*>(proxy->m_clientObject));
+    };
+    unite(above_, place(pairs[i].m_pProxy0), place(pairs[i].m_pProxy1));
+  }
+  sort_bodies();
+  sort_joints();
+}
+
 void IslandWorld::sort_bodies() {
   // islands get numbers in the order of their first body
   const int count = m_nonStaticRigidBodies.size();
-  island_of_tag_.resizeNoInitialize(getNumCollisionObjects());
-  for (int i = 0; i < count; ++i) {
-    const int tag = m_nonStaticRigidBodies[i]->getIslandTag();
-    if (tag >= 0) island_of_tag_[tag] = -1;
-  }
+  island_of_root_.resizeNoInitialize(count);
+  for (int i = 0; i < count; ++i) island_of_root_[i] = -1;
+  island_.resizeNoInitialize(count);
   island_count_ = 0;
   zero(body_start_, count + 1);
   for (int i = 0; i < count; ++i) {
-    const int tag = m_nonStaticRigidBodies[i]->getIslandTag();
-    if (tag < 0) continue;  // kinematic
-    if (island_of_tag_[tag] < 0) island_of_tag_[tag] = island_count_++;
-    ++body_start_[island_of_tag_[tag] + 1];
+    int& island = island_of_root_[root_of(above_, i)];
+    if (island < 0) island = island_count_++;
+    island_[i] = island;
+    ++body_start_[island + 1];
   }
   body_start_.resizeNoInitialize(island_count_ + 1);
   accumulate(body_start_, cursor_);
   bodies_.resizeNoInitialize(count);
-  for (int i = 0; i < count; ++i) {
-    btRigidBody* body = m_nonStaticRigidBodies[i];
-    if (body->getIslandTag() >= 0) bodies_[cursor_[island_of_tag_[body->getIslandTag()]]++] = body;
-  }
+  for (int i = 0; i < count; ++i) bodies_[cursor_[island_[i]]++] = m_nonStaticRigidBodies[i];
 }
 
 void IslandWorld::sort_joints() {
   const int count = m_constraints.size();
+  const auto island = [&](int joint) {
+    const Ends& ends = ends_[joint];
+    return ends.a < 0 && ends.b < 0 ? -1 : island_[ends.a >= 0 ? ends.a : ends.b];
+  };
   zero(joint_start_, island_count_ + 1);
-  island_of_joint_.resizeNoInitialize(count);
-  for_each(m_constraints, [&](int i, btTypedConstraint& joint) {
-    const int tag = island_tag(joint.getRigidBodyA(), joint.getRigidBodyB());
-    island_of_joint_[i] = tag < 0 ? -1 : island_of_tag_[tag];
-  });
   for (int i = 0; i < count; ++i) {
-    if (island_of_joint_[i] >= 0) ++joint_start_[island_of_joint_[i] + 1];
+    if (island(i) >= 0) ++joint_start_[island(i) + 1];
   }
   accumulate(joint_start_, cursor_);
   joints_.resizeNoInitialize(count);
   for (int i = 0; i < count; ++i) {
-    if (island_of_joint_[i] >= 0) joints_[cursor_[island_of_joint_[i]]++] = m_constraints[i];
+    if (island(i) >= 0) {
+      joints_[cursor_[island(i)]++] = m_constraints[i];
+    } else if (last_) {
+      end_tick(*m_constraints[i]);
+    }
   }
 }
 
@@ -238,10 +276,10 @@ void IslandWorld::sort_contacts() {
     if (manifold->getNumContacts() == 0) continue;
     const btCollisionObject* a = manifold->getBody0();
     const btCollisionObject* b = manifold->getBody1();
-    const int tag = island_tag(*a, *b);
-    if (tag < 0 || !dispatch->needsResponse(a, b)) continue;
+    const int place = std::max(place_of(*a), place_of(*b));
+    if (place < 0 || !dispatch->needsResponse(a, b)) continue;
     touches_.push_back(
-        {island_of_tag_[tag], a->getBroadphaseHandle()->m_uniqueId, b->getBroadphaseHandle()->m_uniqueId, manifold});
+        {island_[place], a->getBroadphaseHandle()->m_uniqueId, b->getBroadphaseHandle()->m_uniqueId, manifold});
   }
   // Bullet keeps manifolds in an order that depends on all islands' history; the parts' age does not
   const int count = touches_.size();
@@ -270,24 +308,56 @@ void IslandWorld::gather_batches(int least) {
     // the direct solver counts and falls back island by island
     const bool joints_follow = last < island_count_ && joint_start_[last + 1] > joint_start_[last];
     const bool alone = solvers.front()->direct_wanted() && (joints > 0 || joints_follow);
-    if (alone || joints + contacts >= least || last == island_count_) batches_.push_back(last);
+    const int bodies = body_start_[last] - body_start_[first];
+    if (alone || joints + contacts >= least || bodies >= kBodies || last == island_count_) batches_.push_back(last);
   }
 }
 
+// All that a step does to an island's bodies and joints, one thing after the other while they are at hand.
 void IslandWorld::solve_batch(int batch, IslandSolver& solver, const btContactSolverInfo& info) {
   const auto range = [](auto& items, int first) { return first < items.size() ? &items[first] : nullptr; };
   const int first = batches_[batch];
   const int last = batches_[batch + 1];
   const auto count = [&](const btAlignedObjectArray<int>& start) { return start[last] - start[first]; };
+  load_bodies(first, last, info.m_timeStep);
   solver.solveGroup(range(bodies_, body_start_[first]), count(body_start_), range(contacts_, contact_start_[first]),
                     count(contact_start_), range(joints_, joint_start_[first]), count(joint_start_), info, nullptr,
                     getDispatcher());
+  move_bodies(first, last, info.m_timeStep);
+}
+
+void IslandWorld::load_bodies(int first, int last, btScalar h) {
+  const int ahead = body_start_[last] - body_start_[first];
+  for (int i = body_start_[first]; i < body_start_[last]; ++i) {
+    // those of the next batch, which come as long as this one takes
+    if (i + ahead < body_start_[island_count_]) prefetch(bodies_[i + ahead], sizeof(btRigidBody));
+    btRigidBody& body = static_cast<btRigidBody&>(*bodies_[i]);
+    if (first_) body.applyGravity();
+    if (body.getLinearDamping() != 0 || body.getAngularDamping() != 0) body.applyDamping(h);
+  }
+}
+
+void IslandWorld::move_bodies(int first, int last, btScalar h) {
+  for (int i = body_start_[first]; i < body_start_[last]; ++i) {
+    btRigidBody& body = static_cast<btRigidBody&>(*bodies_[i]);
+    if (!body.isActive() || body.isStaticOrKinematicObject()) continue;
+    btTransform moved;
+    body.predictIntegratedTransform(h, moved);
+    body.proceedToTransform(moved);
+    if (last_) body.clearForces();
+    if (ailment(body) != nullptr) ails_.store(true, std::memory_order_relaxed);
+  }
+  const int ahead = joint_start_[last] - joint_start_[first];
+  for (int i = joint_start_[first]; i < joint_start_[last]; ++i) {
+    if (i + ahead < joint_start_[island_count_]) prefetch(joints_[i + ahead], sizeof(JointConstraint));
+    if (last_) end_tick(*joints_[i]);
+  }
 }
 
 // Islands share bodies that don't move alone, which solvers only read (none is kinematic: those would be written to).
 void IslandWorld::solve_islands(const btContactSolverInfo& info) {
   const BulletMemory::Scope heap(nullptr);  // the solvers' rows; helpers of a team have no other memory
-  Team* const helpers = joints_.size() + contacts_.size() >= kTeamWork ? team.get() : nullptr;
+  Team* const helpers = joints_.size() + contacts_.size() + bodies_.size() >= kTeamWork ? team.get() : nullptr;
   share_out(helpers, batches_.size() - 1,
             [&](int batch, int member) { solve_batch(batch, *solvers[static_cast<std::size_t>(member)], info); });
 }

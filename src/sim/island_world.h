@@ -2,6 +2,7 @@
 // which sets up the rows of our joints and hands back the impulses they applied.
 #pragma once
 
+#include <array>
 #include <atomic>
 #include <memory>
 #include <vector>
@@ -74,6 +75,8 @@ class IslandSolver : public btSequentialImpulseConstraintSolver {
   IslandDirect direct_;
   bool direct_wanted_ = false;
   bool direct_here_ = false;  // in the island at hand
+  // what this one writes must not share a line of the cache with the next member's solver, which lies behind it
+  std::array<char, 64> apart_{};
 };
 
 /// What a world is made of; a base of IslandWorld so that it outlives Bullet's part.
@@ -109,9 +112,13 @@ class IslandWorld : private WorldParts, public btDiscreteDynamicsWorld {
   void removeConstraint(btTypedConstraint* constraint) override;
   void addRigidBody(btRigidBody* body) override;
   void addRigidBody(btRigidBody* body, int group, int mask) override;
+  void removeRigidBody(btRigidBody* body) override;
 
   /// Objects of one group, >= 0, don't collide with each other from now on; -1: of none.
   void set_apart(btCollisionObject& object, int group);
+
+  /// Joints' rates anew, where velocities were changed in an internal step's callback.
+  void refresh_joints();
 
   /// Whether a part is beyond what is healthy (health.h) since the internal step at hand.
   bool ails() const { return ails_.load(std::memory_order_relaxed); }
@@ -127,6 +134,7 @@ class IslandWorld : private WorldParts, public btDiscreteDynamicsWorld {
   void predictUnconstraintMotion(btScalar h) override;
   void createPredictiveContacts(btScalar h) override;
   void updateAabbs() override;
+  void calculateSimulationIslands() override;
   void solveConstraints(btContactSolverInfo& info) override;
   void integrateTransforms(btScalar h) override;
   void updateActivationState(btScalar h) override;
@@ -142,24 +150,41 @@ class IslandWorld : private WorldParts, public btDiscreteDynamicsWorld {
   template <class Object, class Work>
   void for_each(const btAlignedObjectArray<Object*>& objects, Work&& work);
   void look_anew(btTypedConstraint& joint);
+  int place_of(const btCollisionObject& object) const { return places_[object.getWorldArrayIndex()]; }
+  static int root_of(btAlignedObjectArray<int>& above, int place);
+  static void unite(btAlignedObjectArray<int>& above, int a, int b);
+  void learn_joints();
   void sort_bodies();
   void sort_joints();
   void sort_contacts();
   void gather_batches(int least);
   void solve_islands(const btContactSolverInfo& info);
   void solve_batch(int batch, IslandSolver& solver, const btContactSolverInfo& info);
+  void load_bodies(int first, int last, btScalar h);
+  void move_bodies(int first, int last, btScalar h);
 
   std::atomic<bool> ails_{false};
   bool first_ = false;  // of a tick's internal steps, and the last
   bool last_ = false;
 
+  // What only bodies and joints that come or go change: places of bodies in m_nonStaticRigidBodies, -1 of what stands.
+  struct Ends {
+    int a;
+    int b;
+  };
+  bool joints_known_ = false;
+  btAlignedObjectArray<int> places_;  // by object
+  btAlignedObjectArray<Ends> ends_;   // by joint
+  btAlignedObjectArray<int> joined_;  // by body: union-find
+
   // Scratch of one internal step, kept so that nothing is allocated once the scene stands. Items of island i are
   // bodies_[body_start_[i]] up to bodies_[body_start_[i + 1]], and so on.
   int island_count_ = 0;
-  btAlignedObjectArray<int> island_of_tag_;
+  btAlignedObjectArray<int> above_;   // by body: union-find, with what meets
+  btAlignedObjectArray<int> island_;  // by body
   btAlignedObjectArray<int> body_start_;
   btAlignedObjectArray<int> joint_start_;
-  btAlignedObjectArray<int> island_of_joint_;
+  btAlignedObjectArray<int> island_of_root_;
   btAlignedObjectArray<int> contact_start_;
   btAlignedObjectArray<int> cursor_;
   btAlignedObjectArray<btCollisionObject*> bodies_;

@@ -6,6 +6,7 @@
 #include <deque>
 #include <utility>
 
+#include "base/prefetch.h"
 #include "sim/island_world.h"
 
 namespace limber {
@@ -176,28 +177,38 @@ class StockPlayer : public Player<btDiscreteDynamicsWorld> {
   std::vector<std::unique_ptr<btGeneric6DofSpring2Constraint>> joints_;
 };
 
-class IslandPlayer : public Player<IslandWorld> {
+// where World has it, too; outlives the parts
+struct IslandMemory {
+  BulletMemory memory;
+};
+
+class IslandPlayer : private IslandMemory, public Player<IslandWorld> {
  public:
-  IslandPlayer(const RawScene& raw, bool direct) : Player(raw), world_(WorldSetup{}) {
-    world_.set_direct(direct);
-    world_.direct().measure(scene.measure);
-    build(world_);
+  IslandPlayer(const RawScene& raw, bool direct) : Player(raw) {
+    const BulletMemory::Scope scope(&memory);
+    world_ = std::make_unique<IslandWorld>(WorldSetup{});
+    world_->set_direct(direct);
+    world_->direct().measure(scene.measure);
+    build(*world_);
     for (const RawJoint& joint : scene.joints) add_joint(joint);
   }
   ~IslandPlayer() override {
-    for (const auto& joint : joints_) world_.removeConstraint(joint.get());
-    for (const auto& body : bodies) world_.removeRigidBody(body.get());
-    if (floor) world_.removeRigidBody(floor.get());
+    for (const auto& joint : joints_) world_->removeConstraint(joint.get());
+    for (const auto& body : bodies) world_->removeRigidBody(body.get());
+    if (floor) world_->removeRigidBody(floor.get());
   }
   void step() override {
+    constexpr std::size_t kAhead = 8;
     for (std::size_t i = 0; i < joints_.size(); ++i) {
+      // as the program's motors do
+      if (i + kAhead < joints_.size()) prefetch(&joints_[i + kAhead]->axis(5), sizeof(AxisSettings));
       const RawJoint& j = scene.joints[i];
       if (j.force > 0) joints_[i]->set_goal(5, j.target(time), 0, j.speed);
     }
     pull();
-    world_.step(scene.step, 1);
+    world_->step(scene.step, 1);
     time += scene.step;
-    const DirectResiduals& r = world_.direct().residuals();
+    const DirectResiduals& r = world_->direct().residuals();
     worst_ = {0,
               0,
               0,
@@ -216,7 +227,7 @@ class IslandPlayer : public Player<IslandWorld> {
   }
   Direct direct() const override {
     Direct d = worst_;
-    const DirectCounts c = world_.direct_counts();
+    const DirectCounts c = world_->direct_counts();
     d.direct = static_cast<double>(c.direct);
     d.plain = static_cast<double>(c.plain);
     d.fallbacks = static_cast<double>(c.fallbacks);
@@ -237,11 +248,11 @@ class IslandPlayer : public Player<IslandWorld> {
     if (joint.force > 0) s.drive = AxisDrive::servo;
     if (joint.stiffness > 0) s.drive = AxisDrive::spring;
     made->set_axis(5, s);
-    world_.addConstraint(made.get());
+    world_->addConstraint(made.get());
     joints_.push_back(std::move(made));
   }
 
-  IslandWorld world_;
+  std::unique_ptr<IslandWorld> world_;
   Direct worst_;
   std::vector<std::unique_ptr<JointConstraint>> joints_;
 };

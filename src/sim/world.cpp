@@ -208,6 +208,7 @@ void World::settle() {
 }
 
 void World::step() {
+  if (team_ != nullptr && bullet_->getNumCollisionObjects() > kPlaces) team_->rouse();
   const double begin = clock_seconds();
   if (!panic_.on()) behaviors_->step(timestep());
   const double start = clock_seconds();
@@ -251,7 +252,10 @@ void World::tell_bodies() {
 
 void World::after_internal_step(btDynamicsWorld* bullet, btScalar h) {
   World& world = *static_cast<World*>(bullet->getWorldUserInfo());
-  if (world.panic_.on()) world.panic_.brake(static_cast<double>(h));
+  if (world.panic_.on()) {
+    world.panic_.brake(static_cast<double>(h));
+    world.bullet_->refresh_joints();
+  }
   world.contacts_.gather(*bullet->getDispatcher());
   // what is no number must not reach the next internal step, where it would spread
   if (!world.bullet_->ails()) return;

@@ -37,7 +37,7 @@ TEST(Bench, GivesTheFiguresOfAnArm) {
   for (const char* phase : {"commands", "scripts", "effects", "physics", "readouts", "snapshot", "collector"}) {
     EXPECT_GE(figures["phases_us"][phase], 0) << phase;
   }
-  for (const char* phase : {"broadphase", "narrowphase", "islands", "solver", "motion"}) {
+  for (const char* phase : {"broadphase", "narrowphase", "islands", "solver"}) {
     EXPECT_GT(figures["bullet_us"][phase], 0) << phase;
   }
   EXPECT_GT(figures["ratio"]["min"], 0);

@@ -44,13 +44,26 @@ TEST(Team, WithoutWorkItEnds) {
   for (int i = 0; i < 50; i++) Team(8).run(0, [](int, int) { ADD_FAILURE(); });
 }
 
-// every piece waits for another member's: all of them must be at work at once
+TEST(Team, WhoIsRousedForNothingDoesNothing) {
+  Team team(3);
+  int sum = 0;
+  for (int round = 0; round < 500; round++) {
+    team.rouse();
+    std::atomic<int> done{0};
+    if (round % 3 != 0) team.run(5, [&](int piece, int) { done += piece; });
+    sum += done;
+  }
+  EXPECT_EQ(sum, 333 * (0 + 1 + 2 + 3 + 4));
+}
+
+// every piece waits for another member's: all of them must be at work at once, and each begins with its own part
 TEST(Team, MembersWorkSideBySide) {
   constexpr int kMembers = 3;
   Team team(kMembers);
   for (int round = 0; round < 20; round++) {
     std::atomic<int> here{0};
-    team.run(kMembers, [&](int, int) {
+    team.run(kMembers, [&](int piece, int member) {
+      EXPECT_EQ(piece, member);
       here++;
       while (here < kMembers) std::this_thread::yield();
     });
