@@ -18,8 +18,6 @@ constexpr int kBodies = 64;
 constexpr int kTeamWork = 128;
 /// So many objects ahead their memory is asked for.
 constexpr int kAhead = 8;
-/// And contact manifolds, of which the end is looked at alone.
-constexpr int kManifoldsAhead = 8;
 /// Contact pairs in Bullet's pool.
 constexpr int kPool = 64;
 
@@ -271,7 +269,7 @@ void IslandWorld::sort_contacts() {
   touches_.resizeNoInitialize(0);
   const int manifolds = dispatch->getNumManifolds();
   for (int i = 0; i < manifolds; ++i) {
-    if (i + kManifoldsAhead < manifolds) prefetch_end(*dispatch->getManifoldByIndexInternal(i + kManifoldsAhead));
+    if (i + kAhead < manifolds) prefetch_end(*dispatch->getManifoldByIndexInternal(i + kAhead));
     btPersistentManifold* manifold = dispatch->getManifoldByIndexInternal(i);
     if (manifold->getNumContacts() == 0) continue;
     const btCollisionObject* a = manifold->getBody0();
