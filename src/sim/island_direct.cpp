@@ -94,10 +94,15 @@ bool IslandDirect::settle() {
   if (outer_.empty()) return finite();
   system_.keep();
   for (OuterRow& row : outer_) row.kept = row.impulse;
+  take_contacts();
   for (int round = 0; round < kRounds; ++round) {
-    if (!build_responses()) return false;
-    const bool pinned = give_up_pinned();
-    const double missed = pinned ? 0 : solve_outer();
+    bool pinned = false;
+    double missed = 0;
+    do {
+      if (!build_responses()) return false;
+      pinned = give_up_pinned();
+      missed = pinned ? 0 : solve_outer();
+    } while (!pinned && take_contacts() > 0);
     int broken = pinned ? 1 : give_up_broken();
     // too stiff to be solved: then every motor and limit that contacts feel gives way as far as its force says
     if ((!(missed < kOuterMiss) || round == kRounds - 2) && give_up_touched() > 0) broken++;

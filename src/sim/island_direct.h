@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cstdint>
+#include <span>
 #include <utility>
 #include <vector>
 
@@ -95,6 +96,7 @@ class IslandDirect {
     double friction = 0;
     double most = 0;
     bool loop = false;
+    bool aside = false;                            // a contact that would not touch: its rows are not solved for
     BoxSolver::Status guess = BoxSolver::unknown;  // where it stood in the round before
     double likely = 0;                             // its impulse then
   };
@@ -117,6 +119,9 @@ class IslandDirect {
   int tree_at(int node) const { return node < 0 ? -1 : tree_of_[static_cast<std::size_t>(node)]; }
   void load(const OuterRow& row, double impulse);
   void feel(const OuterRow& row, std::array<Reach, 2>& reaches);
+  int take_contacts();
+  bool gather_rows();
+  void respond(BoxSolver& box, std::span<const int> rows);
   bool build_responses();
   bool give_up_pinned();
   int give_up_touched();
@@ -177,8 +182,10 @@ class IslandDirect {
   std::vector<int> body_links_;
   std::vector<int> stack_;
   std::vector<OuterRow> outer_;
-  std::vector<double> felt_;                   // by all outer rows, one after the other
-  std::vector<std::array<Reach, 2>> reaches_;  // outer row: the trees it touches
+  std::vector<int> boxed_;                     // rows of outer_ that are solved for
+  std::vector<int> place_;                     // outer row: where in boxed_; -1: aside
+  std::vector<double> felt_;                   // by rows of a box, one after the other
+  std::vector<std::array<Reach, 2>> reaches_;  // row of a box: the trees it touches
   std::vector<double> impulses_;
   std::vector<int> push_rows_;
   std::vector<std::pair<btVector3, btVector3>>

@@ -42,6 +42,9 @@ void IslandDirect::add_contact(btSolverConstraint& row, int normal, double most)
   out.normal = normal;
   out.friction = static_cast<double>(row.m_friction);
   out.most = most;
+  // until take_contacts() brings it back
+  out.aside = out.impulse == 0 && (normal < 0 || outer_[at(normal)].aside);
+  if (normal >= 0 && !out.aside) outer_[at(normal)].aside = false;
   outer_.push_back(out);
 }
 
@@ -138,15 +141,14 @@ void IslandDirect::feel(const OuterRow& row, std::array<Reach, 2>& reaches) {
   if (tree_b != tree_a) take(reaches[1], b, {});
 }
 
-bool IslandDirect::build_responses() {
-  if (box_factors_ == system_.factors() && box_.size() == static_cast<int>(outer_.size())) return true;
-  box_factors_ = system_.factors();
-  const int count = static_cast<int>(outer_.size());
-  box_.start(count);
+// The trees' response between these outer rows.
+void IslandDirect::respond(BoxSolver& box, std::span<const int> rows) {
+  const int count = static_cast<int>(rows.size());
+  box.start(count);
   for (int i = 0; i < system_.trees.size(); ++i) system_.trees.node(i).ask.fill(0);
   felt_.clear();
-  reaches_.resize(outer_.size());
-  for (std::size_t i = 0; i < outer_.size(); ++i) feel(outer_[i], reaches_[i]);
+  reaches_.resize(rows.size());
+  for (std::size_t i = 0; i < rows.size(); ++i) feel(outer_[at(rows[i])], reaches_[i]);
   const auto together = [this](const Reach& a, const Reach& b) {
     if (a.tree != b.tree || a.tree < 0) return 0.0;
     return product(felt_.data() + a.begin, felt_.data() + b.begin, std::min(a.count, b.count));
@@ -157,9 +159,44 @@ bool IslandDirect::build_responses() {
       const auto& [other, another] = reaches_[at(k)];
       double response = together(first, other) + together(first, another);
       if (second.tree >= 0) response += together(second, other) + together(second, another);
-      box_.response(i, k) = box_.response(k, i) = response;
+      box.response(i, k) = box.response(k, i) = response;
     }
-    box_.response(i, i) += outer_[at(i)].softness;
+  }
+}
+
+// Contacts that stand aside and would be passed through now come back, with their friction; how many rows these were.
+int IslandDirect::take_contacts() {
+  int taken = 0;
+  for (std::size_t i = 0; i < fixed_outer_; ++i) {
+    OuterRow& row = outer_[i];
+    if (!row.aside) continue;
+    row.aside = row.normal < 0 ? row.target - rate_of(row) <= kOuterTolerance : outer_[at(row.normal)].aside;
+    taken += row.aside ? 0 : 1;
+  }
+  return taken;
+}
+
+// False: they are the same ones as before.
+bool IslandDirect::gather_rows() {
+  const std::size_t boxed = boxed_.size();
+  const std::size_t all = place_.size();
+  place_.resize(outer_.size());
+  boxed_.clear();
+  for (std::size_t i = 0; i < outer_.size(); ++i) {
+    place_[i] = outer_[i].aside ? -1 : static_cast<int>(boxed_.size());
+    if (!outer_[i].aside) boxed_.push_back(static_cast<int>(i));
+  }
+  return place_.size() != all || boxed_.size() != boxed;
+}
+
+// False: not a number.
+bool IslandDirect::build_responses() {
+  const bool other_rows = gather_rows();
+  if (box_factors_ == system_.factors() && !other_rows) return true;
+  box_factors_ = system_.factors();
+  respond(box_, boxed_);
+  for (int i = 0; i < box_.size(); ++i) {
+    box_.response(i, i) += outer_[at(boxed_[at(i)])].softness;
     if (!std::isfinite(box_.response(i, i))) return false;
   }
   return true;
@@ -169,7 +206,7 @@ bool IslandDirect::build_responses() {
 bool IslandDirect::give_up_pinned() {
   int given_up = 0;
   for (int i = 0; i < box_.size(); ++i) {
-    const OuterRow& row = outer_[at(i)];
+    const OuterRow& row = outer_[at(boxed_[at(i)])];
     if (row.contact == nullptr || row.normal >= 0 || box_.response(i, i) > kPinned * row.eases) continue;
     for (const int tree : {tree_at(row.a.node), tree_at(row.b.node)}) {
       if (tree >= 0) given_up += system_.give_up_all(trees_[at(tree)].first, trees_[at(tree)].last);
@@ -180,7 +217,8 @@ bool IslandDirect::give_up_pinned() {
 
 int IslandDirect::give_up_touched() {
   int given_up = 0;
-  for (const OuterRow& row : outer_) {
+  for (const int i : boxed_) {
+    const OuterRow& row = outer_[at(i)];
     for (const int tree : {tree_at(row.a.node), tree_at(row.b.node)}) {
       if (tree >= 0) given_up += system_.give_up_all(trees_[at(tree)].first, trees_[at(tree)].last);
     }
@@ -191,14 +229,14 @@ int IslandDirect::give_up_touched() {
 // With the responses at hand: solves for all outer rows, and lets the trees follow. Returns what a row still misses.
 double IslandDirect::solve_outer() {
   for (int i = 0; i < box_.size(); ++i) {
-    OuterRow& row = outer_[at(i)];
+    OuterRow& row = outer_[at(boxed_[at(i)])];
     row.begun = row.axis != nullptr ? row.axis->impulse : row.impulse;
     box_.row(i) = {
         row.axis != nullptr ? system_.residual(*row.axis) : row.target - rate_of(row) - row.softness * row.impulse,
         row.begun,
         row.lower,
         row.upper,
-        row.normal,
+        row.normal < 0 ? -1 : place_[at(row.normal)],
         row.friction,
         row.most,
         row.guess,
@@ -206,7 +244,7 @@ double IslandDirect::solve_outer() {
   }
   const double missed = box_.solve(kOuterTolerance);
   for (int i = 0; i < box_.size(); ++i) {
-    OuterRow& row = outer_[at(i)];
+    OuterRow& row = outer_[at(boxed_[at(i)])];
     row.impulse = box_.row(i).impulse;
     row.likely = std::isfinite(row.impulse) ? row.impulse : row.begun;
     row.guess = box_.status(i);
@@ -235,19 +273,19 @@ void IslandDirect::push_apart(IslandPools& pools, const btContactSolverInfo& inf
   if (std::none_of(outer_.begin(), outer_.end(), [&](const OuterRow& r) { return pushes(r) && wants(r) > 0; })) return;
   for (OuterRow& row : outer_) row.begun = 0;
   push_rows_.clear();
-  for (int i = 0; i < box_.size(); ++i) {
+  for (int i = 0; i < static_cast<int>(fixed_outer_); ++i) {
     const OuterRow& row = outer_[at(i)];
     if (pushes(row) || (row.loop && row.lower < -kTreeInfinity && row.upper > kTreeInfinity)) push_rows_.push_back(i);
   }
   const int count = static_cast<int>(push_rows_.size());
-  push_box_.start(count);
+  respond(push_box_, push_rows_);
   for (int i = 0; i < count; ++i) {
     const OuterRow& row = outer_[at(push_rows_[at(i)])];
     BoxSolver::Row& box = push_box_.row(i);
     box.left = row.loop ? 0 : wants(row);
     box.lower = row.loop ? row.lower : 0;
     box.upper = row.upper;
-    for (int k = 0; k < count; ++k) push_box_.response(i, k) = box_.response(push_rows_[at(i)], push_rows_[at(k)]);
+    push_box_.response(i, i) += row.softness;
   }
   push_box_.solve(kOuterTolerance);
   for (int i = 0; i < system_.trees.size(); ++i) {
@@ -298,7 +336,7 @@ void IslandDirect::take_residuals(const IslandPools& pools) {
     const double bound = row.most > 0 ? std::min(reach, row.most) : reach;
     const double left = row.target - rate_of(row) - row.softness * row.impulse;
     const double m = miss(left, row.impulse, row.normal < 0 ? row.lower : -bound, row.normal < 0 ? row.upper : bound,
-                          std::max(box_.response(i, i), 1e-9));
+                          std::max(place_[at(i)] < 0 ? row.eases : box_.response(place_[at(i)], place_[at(i)]), 1e-9));
     residuals_.contact = std::max(residuals_.contact, m);
   }
 }
