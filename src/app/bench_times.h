@@ -40,6 +40,14 @@ inline double rounded(double value, int decimals) {
 class Samples {
  public:
   void add(double seconds) { all_.push_back(seconds); }
+  /// What was taken again and again: its i-th sample is the least that was told of it.
+  void add_least(std::size_t i, double seconds) {
+    if (i == all_.size()) {
+      all_.push_back(seconds);
+    } else {
+      all_[i] = std::min(all_[i], seconds);
+    }
+  }
   bool empty() const { return all_.empty(); }
   std::size_t count() const { return all_.size(); }
   /// 0: the least, 0.5: the median, 0.99: what one in a hundred exceeds.
