@@ -2,7 +2,6 @@
 // which sets up the rows of our joints and hands back the impulses they applied.
 #pragma once
 
-#include <array>
 #include <atomic>
 #include <memory>
 #include <vector>
@@ -75,8 +74,6 @@ class IslandSolver : public btSequentialImpulseConstraintSolver {
   IslandDirect direct_;
   bool direct_wanted_ = false;
   bool direct_here_ = false;  // in the island at hand
-  // what this one writes must not share a line of the cache with the next member's solver, which lies behind it
-  std::array<char, 64> apart_{};
 };
 
 /// What a world is made of; a base of IslandWorld so that it outlives Bullet's part.
