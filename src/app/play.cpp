@@ -1,7 +1,9 @@
 // Playing: the simulation's thread, the network's thread; signals, and the window or the status line on the main one.
 #include "app/play.h"
 
+#include <algorithm>
 #include <atomic>
+#include <chrono>
 #include <csignal>
 #include <cstdio>
 #include <cstdlib>
@@ -199,12 +201,16 @@ bool watch(const Show& show, Engine& engine, const EngineLink& link, const sigse
     if (heard == Heard::nothing && window == nullptr) print_status(link);
     if (heard != Heard::end && !closed) continue;
     engine.stop();
-    // somebody waits: a second, or until the second signal; between them comes the call that it is over
-    for (int i = 0; i < 2 && !show.over(); i++) {
-      if (listen(signals, 450) == Heard::end) break;
+    // somebody waits: a second, or for less once there was another signal; that may have come with the first, as to a
+    // program and to its group, and is no reason to cut a tick of usual length
+    using Clock = std::chrono::steady_clock;
+    Clock::time_point last = Clock::now() + std::chrono::milliseconds(900);
+    while (!show.over() && Clock::now() < last) {
+      const auto left = std::chrono::ceil<std::chrono::milliseconds>(last - Clock::now());
+      if (listen(signals, left.count()) != Heard::end) continue;
+      last = std::min(last, Clock::now() + std::chrono::milliseconds(250));
     }
-    if (!show.over())
-      leave("ended in the middle of a tick that takes seconds: fewer substeps or solver_iterations would help");
+    if (!show.over()) leave("ended in the middle of a long tick: fewer substeps or solver_iterations would help");
     return true;
   }
   return false;

@@ -66,6 +66,20 @@ TEST(Play, CtrlCEndsCleanly) {
   }
 }
 
+// as `timeout` sends them, to the program and to its group
+TEST(Play, TwoSignalsAtOnceEndCleanlyToo) {
+  const Folder folder;
+  const std::string scene =
+      folder.file("s.lua", std::string(kBall) + "sim:on_step(function() for i = 1, 2e6 do math.sin(i) end end)\n");
+  Running running(limber({scene, "--osc-in", "off", "--osc-out", "off", "--query", "off", "--hash"}));
+  ASSERT_TRUE(running.wait_for("playing headless"));
+  running.signal(SIGINT);
+  running.signal(SIGTERM);
+  const Ran ran = running.finish();
+  EXPECT_EQ(ran.code, 0) << ran.err;
+  EXPECT_TRUE(ran.out.starts_with("hash ")) << ran.out;
+}
+
 TEST(Play, StrictEndsWithOneAtAFault) {
   const Folder folder;
   const std::string scene = folder.file("s.lua", std::string(kBall) + "sim:on_step(function() error('oh') end)\n");
