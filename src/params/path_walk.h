@@ -41,9 +41,10 @@ class PathWalk {
   static Result<Place> find(const Shape& shape, std::string_view path, bool hint = true) {
     if (path.empty() || path.front() != '/')
       return Error{fmt::format("'{}' is no address: it must begin with /", printable(path))};
-    if (path.size() > 1 && path.back() == '/') path.remove_suffix(1);
+    if (path.back() == '/') path.remove_suffix(1);
     Id at = shape.root();
-    const std::vector<std::string_view> pieces = split(path.substr(1), '/');
+    const std::vector<std::string_view> pieces =
+        path.empty() ? std::vector<std::string_view>{} : split(path.substr(1), '/');
     for (std::size_t i = 0; i < pieces.size(); i++) {
       const std::string name = unescape_name(pieces[i]);
       if (const auto child = child_named(shape, at, name)) {

@@ -40,6 +40,7 @@ struct Catalog : testing::Test {
 using Paths = std::vector<std::string>;
 
 TEST_F(Catalog, FindsPlacesByPath) {
+  EXPECT_EQ(found("/"), "/");
   EXPECT_EQ(found("/toys"), "/toys");
   EXPECT_EQ(found("/toys/bear"), "/toys/bear");
   EXPECT_EQ(found("/toys/bear/"), "/toys/bear");
