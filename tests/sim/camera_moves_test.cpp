@@ -10,6 +10,8 @@
 namespace limber {
 namespace {
 
+using namespace test;
+
 struct Filmed : Stage {
   Camera& camera = world.visuals().camera();
   CameraMoves& moves = world.camera_moves();
