@@ -310,26 +310,33 @@ void Store::mark(NodeId id, const Row& row) {
   Node& node = nodes_[id.slot];
   if (node.marks == 0) marked_.push_back(id);
   node.marks |= std::uint64_t{1} << row.index;
+  apart_ = apart_ && row.apart;
 }
 
 void Store::mark_all(NodeId id) {
   for (const Row& row : nodes_[id.slot].table->rows()) mark(id, row);
 }
 
-void Store::apply_marks() {
+void Store::apply_marks(Team* team) {
   // an effect may mark again (a view of a view): then once more, but not for ever
   for (int round = 0; round < 4 && !marked_.empty(); round++) {
     applying_.clear();
     applying_.swap(marked_);
-    for (std::size_t i = 0; i < applying_.size(); i++) {
-      fetch_ahead(i, applying_.size(), [this](std::size_t place) { return applying_[place]; });
-      run_marks(applying_[i]);
-    }
+    Team* const helpers = std::exchange(apart_, true) ? team : nullptr;
+    share_out_places(helpers, static_cast<int>(applying_.size()), [this](int, int first, int end) {
+      for (auto i = static_cast<std::size_t>(first); i < static_cast<std::size_t>(end); i++) {
+        fetch_ahead(i, applying_.size(), [this](std::size_t place) { return applying_[place]; });
+        run_marks(applying_[i]);
+      }
+    });
   }
 }
 
 // the node stays in the list, where it finds nothing left to do: looking for it would cost more
-void Store::apply_marks(NodeId id) { run_marks(id); }
+void Store::apply_marks(NodeId id) {
+  apart_ = false;
+  run_marks(id);
+}
 
 void Store::run_marks(NodeId id) {
   if (alive(id)) run_effects(id, std::exchange(nodes_[id.slot].marks, 0));

@@ -14,6 +14,7 @@
 #include "base/id.h"
 #include "base/prefetch.h"
 #include "base/result.h"
+#include "base/team.h"
 #include "params/store_undo.h"
 #include "params/table.h"
 
@@ -129,8 +130,9 @@ class Store {
   void mark(NodeId id, const Row& row);
   /// Marks every row that has an effect.
   void mark_all(NodeId id);
-  /// Runs the effects of all marked rows, each function once a node, in the order in which nodes were marked.
-  void apply_marks();
+  /// Runs the effects of all marked rows, each function once a node, in the order in which nodes were marked; where all
+  /// of them are apart, side by side.
+  void apply_marks(Team* team = nullptr);
   /// The same for one node, ahead of the others.
   void apply_marks(NodeId id);
   /// For who goes through many things and is at one of them: after a tick of physics they are far off, and the
@@ -303,6 +305,7 @@ class Store {
   std::unordered_set<std::uint32_t, ChildHash, ChildEqual> child_of_{0, ChildHash{{&nodes_}}, ChildEqual{{&nodes_}}};
   std::vector<const Table*> tables_;
   std::vector<NodeId> marked_;
+  bool apart_ = true;  // all that is marked are effects apart, and no node is in the list twice
   std::vector<NodeId> applying_;
   StoreUndo undo_;
   NodeId root_;

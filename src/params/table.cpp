@@ -177,5 +177,10 @@ Row turns(Row row) {
   return row;
 }
 
+Row apart(Row row) {
+  row.apart = true;
+  return row;
+}
+
 }  // namespace rows
 }  // namespace limber

@@ -59,6 +59,7 @@ struct Row {
   bool live = false;      ///< Stored in the live block: changes by itself, part of every snapshot.
 
   void (*effect)(void* thing) = nullptr;  ///< Brings a changed value into the world; once, before the next step.
+  bool apart = false;  ///< The effect touches what is this thing's alone: of many things they may run side by side.
   void (*read)(const void* thing, double* out) = nullptr;                 ///< A view: computed when asked, not stored.
   void (*write)(void* thing, const double* in) = nullptr;                 ///< A view's way to the rows behind it.
   std::string_view (*say)(const void* thing) = nullptr;                   ///< A text's words, until the thing changes.
@@ -143,6 +144,8 @@ Row live(Row row);
 Row axes(Row row);
 /// The three numbers as a turn.
 Row turns(Row row);
+/// Its effect as one that many things may have side by side.
+Row apart(Row row);
 
 /// A member function of T as effect, view or action of a row.
 template <auto Member>

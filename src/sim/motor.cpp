@@ -50,7 +50,7 @@ Row axis_numbers(std::string name, const char* unit, double initial, double min,
 
 // where an axis is to go, and how fast: what is played at every tick
 Row axis_goals(std::string name, const char* unit, std::string doc) {
-  return axes(effect<&Motor::effect_goals>(vec3(std::move(name), unit, {0, 0, 0}, -1e4, 1e4, std::move(doc))));
+  return axes(apart(effect<&Motor::effect_goals>(vec3(std::move(name), unit, {0, 0, 0}, -1e4, 1e4, std::move(doc)))));
 }
 
 Row applied(std::string name, const char* unit, std::string doc) {

@@ -200,7 +200,7 @@ Result<void> World::act_panic(std::span<const double>) {
 }
 
 void World::settle() {
-  store_.apply_marks();
+  store_.apply_marks(team_.get());
   for (const auto& body : bodies_) {
     body->enter();
     body->settle_joints();

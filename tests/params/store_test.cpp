@@ -5,10 +5,13 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <limits>
+#include <mutex>
 #include <set>
 #include <string>
+#include <thread>
 #include <vector>
 
 #include "params/toy.h"
@@ -387,6 +390,93 @@ TEST_F(StoreTest, TheViewShowsWhereTheNumbersAre) {
   EXPECT_EQ(store.tables()[slot.table], &Toy::table());
   EXPECT_EQ(view.kept[slot.kept + Toy::table().at("size").offset + 1], 5);
   EXPECT_EQ(view.live[slot.live + Toy::table().at("rotation").offset + 3], 1);
+}
+
+// who rolled, and on which threads
+struct Rolls {
+  std::mutex mutex;
+  std::vector<int> order;
+  std::set<std::thread::id> threads;
+};
+
+struct Marble {
+  int number = 0;
+  Rolls* rolls = nullptr;
+  void roll() {
+    const std::scoped_lock lock(rolls->mutex);
+    rolls->order.push_back(number);
+    rolls->threads.insert(std::this_thread::get_id());
+  }
+  static const Table& table() {
+    static const Table marble("marble", "/marbles/<marble>", "",
+                              {rows::apart(rows::effect<&Marble::roll>(rows::number("spin", "", 0, 0, 1, "Alone."))),
+                               rows::effect<&Marble::roll>(rows::number("weight", "", 0, 0, 1, "Among others."))});
+    return marble;
+  }
+};
+
+struct ManyMarbles : testing::Test {
+  static constexpr int kCount = 8 * kPlaces;
+  static constexpr int kOften = 200;  // a helper that should have no part comes in time now and then
+  Store store;
+  Rolls rolls;
+  std::vector<Marble> marbles{std::size_t{kCount}};
+  std::vector<NodeId> ids;
+  Team team{2};
+  void SetUp() override {
+    for (int i = 0; i < kCount; i++) {
+      marbles[static_cast<std::size_t>(i)] = {i, &rolls};
+      ids.push_back(store.add(Marble::table(), store.root(), fmt::format("m{}", i), &marbles[ids.size()]));
+    }
+    store.apply_marks();
+    forget();
+  }
+  void forget() {
+    rolls.order.clear();
+    rolls.threads.clear();
+  }
+  void spin_all() {
+    for (const NodeId id : ids) ASSERT_TRUE(set(store, id, "spin", {1}));
+  }
+  bool in_the_order_of_marks() const { return std::is_sorted(rolls.order.begin(), rolls.order.end()); }
+};
+
+TEST_F(ManyMarbles, EffectsThatAreApartRunSideBySideEachOnce) {
+  // a member may find all done when it wakes up; it will not always
+  const auto end = std::chrono::steady_clock::now() + std::chrono::seconds(20);
+  do {
+    forget();
+    spin_all();
+    store.apply_marks(&team);
+    const std::set<int> each(rolls.order.begin(), rolls.order.end());
+    ASSERT_EQ(rolls.order.size(), ids.size());
+    ASSERT_EQ(each.size(), ids.size());
+  } while (rolls.threads.size() < 2 && std::chrono::steady_clock::now() < end);
+  EXPECT_EQ(rolls.threads.size(), 2u);
+}
+
+TEST_F(ManyMarbles, WithOneThatIsNotApartAllRunInTheirOrder) {
+  for (int often = 0; often < kOften; often++) {
+    spin_all();
+    ASSERT_TRUE(set(store, ids[kCount / 2], "weight", {1}));
+    forget();
+    store.apply_marks(&team);
+    ASSERT_EQ(rolls.order.size(), ids.size());
+    ASSERT_TRUE(in_the_order_of_marks());
+    ASSERT_EQ(rolls.threads, std::set{std::this_thread::get_id()});
+  }
+}
+
+TEST_F(ManyMarbles, ANodeThatIsListedTwiceIsNotSharedOut) {
+  for (int often = 0; often < kOften; often++) {
+    spin_all();
+    store.apply_marks(ids[3]);  // ahead of the others: it stays in the list
+    ASSERT_TRUE(set(store, ids[3], "spin", {0}));
+    forget();
+    store.apply_marks(&team);
+    ASSERT_EQ(rolls.order.size(), ids.size());
+    ASSERT_EQ(rolls.threads, std::set{std::this_thread::get_id()});
+  }
 }
 
 }  // namespace
