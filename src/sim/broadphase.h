@@ -2,6 +2,7 @@
 #pragma once
 
 #include <memory>
+#include <span>
 #include <vector>
 
 #include "base/team.h"
@@ -32,11 +33,12 @@ class Broadphase : public btBroadphaseInterface {
   /// Who may collide with this one has changed: from the next step on its pairs are those that may.
   void look_anew(btBroadphaseProxy* proxy);
 
-  /// Has this one left its box, or was it moved though it stands? Then move() is to follow. [any thread, each another]
+  /// Has this one left its box, or was it moved though it stands? Then leave() is to follow. [any thread, each another]
   static bool look(btCollisionObject& object);
   /// Soon look() will be asked about it.
   static void fetch(const btCollisionObject& object);
-  void move(btBroadphaseProxy* proxy);
+  /// These have.
+  void leave(std::span<btBroadphaseProxy* const> proxies);
 
   btBroadphaseProxy* createProxy(const btVector3& low, const btVector3& high, int shape, void* object, int group,
                                  int mask, btDispatcher* dispatcher) override;
@@ -62,6 +64,7 @@ class Broadphase : public btBroadphaseInterface {
 
   struct Search;  // what is found around some of those that are marked
 
+  void move(Proxy& proxy);
   void make_room(int marked);
   void mark(Proxy& proxy);
   void search(int first, int end, Search& search) const;

@@ -166,11 +166,13 @@ void IslandWorld::updateAabbs() {
   left_.resizeNoInitialize(count);
   for_each(m_collisionObjects, [&](int i, btCollisionObject& object) {
     if (i + kAhead / 2 < count) Broadphase::fetch(*m_collisionObjects[i + kAhead / 2]);
-    left_[i] = Broadphase::look(object);
+    left_[i] = Broadphase::look(object) ? object.getBroadphaseHandle() : nullptr;
   });
+  int left = 0;
   for (int i = 0; i < count; ++i) {
-    if (left_[i]) broadphase->move(m_collisionObjects[i]->getBroadphaseHandle());
+    if (left_[i] != nullptr) left_[left++] = left_[i];
   }
+  if (left > 0) broadphase->leave({&left_[0], static_cast<std::size_t>(left)});
 }
 
 void IslandWorld::updateActivationState(btScalar) {}  // none sleeps

@@ -188,8 +188,8 @@ class IslandWorld : private WorldParts, public btDiscreteDynamicsWorld {
   btAlignedObjectArray<btTypedConstraint*> joints_;
   btAlignedObjectArray<Touch> touches_;
   btAlignedObjectArray<btPersistentManifold*> contacts_;
-  btAlignedObjectArray<char> left_;    // of each object: its box
-  btAlignedObjectArray<int> batches_;  // islands of batch i: batches_[i] up to batches_[i + 1]
+  btAlignedObjectArray<btBroadphaseProxy*> left_;  // of each object that has left its box; null: of the others
+  btAlignedObjectArray<int> batches_;              // islands of batch i: batches_[i] up to batches_[i + 1]
 };
 
 }  // namespace limber
