@@ -1,7 +1,14 @@
 // Snapshots: a copy of the live block beside a roster that is shared while nobody comes or goes.
 #include "engine/publish.h"
 
+#include <algorithm>
+
 namespace limber {
+
+namespace {
+/// Numbers that are copied at a time; it changes no result.
+constexpr int kNumbers = 1 << 14;
+}  // namespace
 
 const LiveOffsets& live_offsets() {
   static const auto joint = [](const char* name) { return Joint::table().at(name).offset; };
@@ -43,7 +50,13 @@ void Publisher::publish(bool paused, double speed_reached, const PhaseTimes& tim
   snapshot->times = times;
   snapshot->roster = roster_;
   const std::span<const double> live = world_.store().live();
-  snapshot->live.assign(live.begin(), live.end());
+  snapshot->live.resize(live.size());
+  share_out_places(
+      world_.team(), static_cast<int>(live.size()),
+      [&](int, int first, int end) {
+        std::copy(live.begin() + first, live.begin() + end, snapshot->live.begin() + first);
+      },
+      kNumbers);
   const std::uint64_t version = world_.store().kept_version();
   if (snapshot->drawing != drawing_ || snapshot->visuals_version != version) {
     drawing_->copy_visuals(world_.store().kept(), snapshot->visuals);

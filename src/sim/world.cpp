@@ -18,7 +18,7 @@ namespace {
 using namespace rows;
 
 /// Bodies that are read out at a time; it changes no result.
-constexpr int kBodies = 8;
+constexpr int kBodies = 4;
 
 struct WorldRows {
   const Row *gravity, *timestep, *substeps, *iterations, *seed, *time, *tick, *solver, *fallbacks;

@@ -122,6 +122,8 @@ class World {
   PartSolids& solids() { return solids_; }
   IslandWorld& bullet() { return *bullet_; }
   BulletMemory& bullet_memory() { return bullet_memory_; }
+  /// What shares out the work of a tick, or null. [sim]
+  Team* team() const { return team_.get(); }
   /// What the debug picture shows.
   const Overlay& overlay() const { return overlay_; }
   Contacts& contact_log() { return contacts_; }
