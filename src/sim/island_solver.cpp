@@ -46,7 +46,20 @@ void IslandSolver::convertContacts(btPersistentManifold** manifolds, int count, 
   }
 }
 
+// Joints know where their rows are, so these don't move until the step is solved.
+void IslandSolver::make_room(int joints) {
+  planned_count_ = 0;
+  const std::size_t most = static_cast<std::size_t>(joints) * JointConstraint::kMostRows;
+  if (planned_.size() < most) planned_.resize(most);
+}
+
+void IslandSolver::plan(JointConstraint& joint, const btContactSolverInfo& info) {
+  joint.set_step(info.m_timeStep);
+  planned_count_ += joint.plan(&planned_[planned_count_]).size();
+}
+
 void IslandSolver::convertJoints(btTypedConstraint** constraints, int count, const btContactSolverInfo& info) {
+  make_room(count);
   direct_here_ = direct_wanted_ && plan_direct(constraints, count, info);
   if (direct_here_) {
     m_tmpSolverNonContactConstraintPool.resizeNoInitialize(0);
@@ -54,9 +67,8 @@ void IslandSolver::convertJoints(btTypedConstraint** constraints, int count, con
     return;
   }
   for (int i = 0; i < count; ++i) {
-    if (constraints[i]->getConstraintType() != JointConstraint::kType) continue;
-    static_cast<JointConstraint*>(constraints[i])->set_step(info.m_timeStep);
-    if (constraints[i]->isEnabled()) static_cast<JointConstraint*>(constraints[i])->plan();
+    if (constraints[i]->getConstraintType() != JointConstraint::kType || !constraints[i]->isEnabled()) continue;
+    plan(*static_cast<JointConstraint*>(constraints[i]), info);
   }
   convert_all(constraints, count, info);
 }
@@ -70,8 +82,7 @@ bool IslandSolver::plan_direct(btTypedConstraint** constraints, int count, const
   for (int i = 0; i < count; ++i) {
     JointConstraint& joint = static_cast<JointConstraint&>(*constraints[i]);
     if (!joint.isEnabled()) continue;
-    joint.set_step(info.m_timeStep);
-    joint.plan();
+    plan(joint, info);
     direct_.add_joint(joint, getOrInitSolverBody(joint.getRigidBodyA(), info.m_timeStep),
                       getOrInitSolverBody(joint.getRigidBodyB(), info.m_timeStep));
   }

@@ -55,6 +55,8 @@ class IslandSolver : public btSequentialImpulseConstraintSolver {
                                          const btContactSolverInfo& info) override;
 
  private:
+  void make_room(int joints);
+  void plan(JointConstraint& joint, const btContactSolverInfo& info);
   bool plan_direct(btTypedConstraint** constraints, int count, const btContactSolverInfo& info);
   void convert_all(btTypedConstraint** constraints, int count, const btContactSolverInfo& info);
   void convert_rows(JointConstraint& joint, btSolverConstraint* rows, int count, const btContactSolverInfo& info);
@@ -69,6 +71,8 @@ class IslandSolver : public btSequentialImpulseConstraintSolver {
     int body_b;
     JointBlock block;
   };
+  std::vector<JointConstraint::Row> planned_;  // of the joints at hand, those of one behind those of another
+  std::size_t planned_count_ = 0;
   btAlignedObjectArray<JointRows> joints_;
   ContactSweep contacts_;
   IslandDirect direct_;

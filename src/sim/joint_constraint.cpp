@@ -37,7 +37,6 @@ AxisSettings tamed(AxisSettings s) {
 JointConstraint::JointConstraint(btRigidBody& parent, btRigidBody& child, const btTransform& frame_in_parent,
                                  const btTransform& frame_in_child)
     : btTypedConstraint(kType, parent, child), frame_a_(frame_in_parent), frame_b_(frame_in_child) {
-  rows_->reserve(kUsualRows);
   reset();
 }
 

@@ -5,9 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cstdint>
-#include <memory>
 #include <span>
-#include <vector>
 
 #include "base/vec.h"
 #include "sim/bullet.h"
@@ -128,9 +126,12 @@ class JointConstraint : public btTypedConstraint {
     btVector3 angular_a;
     btVector3 angular_b;
   };
-  /// Reads the pose and plans the rows of the coming internal step.
-  std::span<const Row> plan();
-  std::span<const Row> planned() const { return *rows_; }
+  /// More rows than these no joint has: an axis, a motor or spring, damping, friction and two limits.
+  static constexpr std::size_t kMostRows = 30;
+  /// Reads the pose and plans the rows of the coming internal step, where there is room for kMostRows of them; there
+  /// they are looked for until the step is solved.
+  std::span<const Row> plan(Row* room);
+  std::span<const Row> planned() const { return {rows_, static_cast<std::size_t>(row_count_)}; }
   Jacobian jacobian(int axis) const;
   /// From each part's centre of mass to the child's pivot, world; the parent-side frame's axes; the dual axes, of which
   /// the angular rates are dual·(spin of the child - spin of the parent).
@@ -167,8 +168,6 @@ class JointConstraint : public btTypedConstraint {
   static constexpr btTypedConstraintType kType = MAX_CONSTRAINT_TYPE;
 
  private:
-  static constexpr std::size_t kUsualRows = 10;  // five locks; motor, damping, friction, two limits
-
   void choose_order();
   void read_pose(bool principal = false);
   void read_angles(const btVector3* axes_b, bool principal);
@@ -222,8 +221,7 @@ class JointConstraint : public btTypedConstraint {
   int row_count_ = 0;
   int locked_rows_ = 0;
   bool bounded_row_ = false;
-  // scratch of one step, so not in Bullet's memory, where a key state would have it
-  std::unique_ptr<std::vector<Row>> rows_ = std::make_unique<std::vector<Row>>();
+  Row* rows_ = nullptr;  // whoever solves has them, for a step
 };
 
 }  // namespace limber

@@ -31,15 +31,17 @@ btScalar softness(const AxisSettings& s, btScalar h) { return s.stop_cfm * s.sto
 
 }  // namespace
 
-std::span<const JointConstraint::Row> JointConstraint::plan() {
+std::span<const JointConstraint::Row> JointConstraint::plan(Row* room) {
+  rows_ = room;
   read_pose();
   plan_rows();
   return planned();
 }
 
 void JointConstraint::getInfo1(btConstraintInfo1* info) {
-  plan();
-  info->m_numConstraintRows = row_count_;
+  std::array<Row, kMostRows> room;
+  info->m_numConstraintRows = static_cast<int>(plan(room.data()).size());
+  row_count_ = 0;
   info->nub = 0;
 }
 
@@ -50,7 +52,7 @@ void JointConstraint::getInfo2(btConstraintInfo2* info) {
     to[2] = v.z();
   };
   for (int r = 0; r < row_count_; ++r) {
-    const Row& row = (*rows_)[at(r)];
+    const Row& row = rows_[r];
     const Jacobian j = jacobian(row.axis);
     const int skip = r * info->rowskip;
     if (row.axis < 3) {
@@ -68,14 +70,14 @@ void JointConstraint::getInfo2(btConstraintInfo2* info) {
 
 void JointConstraint::take_impulses(const btSolverConstraint* rows, int count) {
   for (int r = 0; r < count && r < row_count_; ++r) {
-    take_impulse((*rows_)[at(r)], rows[r].m_appliedImpulse, rows[r].m_jacDiagABInv);
+    take_impulse(rows_[r], rows[r].m_appliedImpulse, rows[r].m_jacDiagABInv);
   }
   tick_time_ += h_;
 }
 
 void JointConstraint::take_impulses(std::span<const double> impulses) {
-  for (std::size_t r = 0; r < impulses.size() && r < rows_->size(); ++r) {
-    const Row& row = (*rows_)[r];
+  for (std::size_t r = 0; r < impulses.size() && r < planned().size(); ++r) {
+    const Row& row = rows_[r];
     btScalar step = 0;
     if (row.kind == RowKind::repair || row.kind == RowKind::motor) {
       const Jacobian j = jacobian(row.axis);
@@ -101,7 +103,6 @@ void JointConstraint::take_impulse(const Row& row, btScalar impulse, btScalar st
 }
 
 void JointConstraint::plan_rows() {
-  rows_->clear();
   row_count_ = 0;
   stiffness_applied_.fill(0);
   holds_spring_ = false;
@@ -127,7 +128,7 @@ void JointConstraint::plan_rows() {
   // start the iteration from what held the joint in the step before
   const int start = moving - (bounded_row_ ? 1 : 0);
   for (int r = start; r < row_count_; ++r) {
-    const Row& row = (*rows_)[at(r)];
+    const Row& row = rows_[r];
     warm_[at(r - start)] = std::clamp(kWarmStart * last_impulse_[row.axis], row.lower, row.upper);
   }
   last_impulse_.fill(0);
@@ -138,8 +139,7 @@ void JointConstraint::plan_rows() {
 
 void JointConstraint::add_row(int axis, btScalar velocity, btScalar soft, btScalar lower, btScalar upper,
                               RowKind kind) {
-  rows_->push_back({velocity, soft, lower, upper, static_cast<std::uint8_t>(axis), kind});
-  row_count_++;
+  rows_[row_count_++] = {velocity, soft, lower, upper, static_cast<std::uint8_t>(axis), kind};
 }
 
 void JointConstraint::plan_lock(int axis) {
