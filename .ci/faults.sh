@@ -24,9 +24,10 @@ renew_copy() {
   [ ! -e ../shared ] || ln -sfn "$(realpath ../shared)" build/faults/shared
 }
 
-# fault_build KIND TARGET...: KIND is plain, asan or tsan; optimised like the sanitizers' builds, which compile faster
+# fault_build KIND TARGET...: KIND is plain, asan or tsan; optimised like the sanitizers' builds, which compile faster;
+# within the copy, where the program finds its data
 fault_build() {
-  local kind=$1 folder=$PWD/build/faults/$1 options=()
+  local kind=$1 folder=$PWD/$copy/build/$1 options=()
   shift
   case $kind in
     asan) options=(-DLIMBER_SANITIZE=address -DCMAKE_CXX_COMPILER=clang++-14) ;;
@@ -52,7 +53,7 @@ build_expected() {
 
 # green WORD FILTER: runs that test program until its first failure
 green() {
-  fixed_addresses timeout -k 5 "${LIMBER_FAULT_SECONDS:-300}" "build/faults/${1%%:*}/${1#*:}" \
+  fixed_addresses timeout -k 5 "${LIMBER_FAULT_SECONDS:-300}" "$copy/build/${1%%:*}/${1#*:}" \
     --gtest_color=no --gtest_fail_fast --gtest_filter="${2:-*}"
 }
 
