@@ -192,7 +192,7 @@ TEST(Dispatch, RefusalsChangeNothingAndSayWhatThereIs) {
       {message("/physics/part/masss", 1), Kind::unknown, "did you mean '/physics/part/mass'?"},
       {message("/somewhere/else"), Kind::unknown, "`limber describe` lists all"},
       {message("no slash", 1), Kind::unknown, "it must begin with /"},
-      {message("/", 1), Kind::unknown, "there is no address /"},
+      {message("/", 1), Kind::refused, "this is a thing, not a value"},
       {message("", 1), Kind::unknown, "it must begin with /"},
       {message("/get"), Kind::refused, "takes a path"},
       {message("/get", 3), Kind::refused, "takes a path"},
