@@ -98,8 +98,8 @@ void Feed::tell(const Tell& tell) {
     Value& value = values_[at];
     const RowValue now = image_->value(value.numbers);
     const std::size_t count = value.row->width;
-    if (value.told && same(now.numbers, value.known.data(), count) && now.text == value.known_text) {
-      value.own = false;
+    // who set it itself believes that, whatever it was told before
+    if (!value.own && value.told && same(now.numbers, value.known.data(), count) && now.text == value.known_text) {
       continue;
     }
     const bool knows = value.own && same(now.numbers, value.set.data(), count);

@@ -109,6 +109,18 @@ TEST(Feed, TheLastOfTwoHandsWinsAndTheOtherHearsIt) {
   EXPECT_EQ(stage.b.news(stage.show), Told{});
 }
 
+TEST(Feed, WhatAnotherHandSetsBackIsTold) {
+  Stage stage;
+  stage.follow("/scene/wind");
+  stage.a.send(stage.show, "/scene/wind", 5);
+  stage.b.send(stage.show, "/scene/wind", 0);
+  EXPECT_EQ(stage.a.news(stage.show), Told{"/scene/wind 0"}) << "it believes 5, though 0 is what it was told";
+  EXPECT_EQ(stage.b.news(stage.show), Told{}) << "it believes 0";
+  stage.a.send(stage.show, "/scene/wind", 0);
+  EXPECT_EQ(stage.a.news(stage.show), Told{});
+  EXPECT_EQ(stage.b.news(stage.show), Told{});
+}
+
 TEST(Feed, WhatTheRangeMadeOfAValueIsTold) {
   Stage stage;
   stage.follow("/scene/wind");
