@@ -126,8 +126,8 @@ class JointConstraint : public btTypedConstraint {
     btVector3 angular_a;
     btVector3 angular_b;
   };
-  /// More rows than these no joint has: an axis, a motor or spring, damping, friction and two limits.
-  static constexpr std::size_t kMostRows = 30;
+  /// More rows no joint has: each of six axes a motor or spring, damping, friction and two limits.
+  static constexpr std::size_t kMostRows = std::size_t{6} * 5;
   /// Reads the pose and plans the rows of the coming internal step, where there is room for kMostRows of them; there
   /// they are looked for until the step is solved.
   std::span<const Row> plan(Row* room);
