@@ -13,6 +13,8 @@ namespace limber {
 namespace {
 constexpr timespec kLook = {0, 20'000'000};
 constexpr int kMostLooks = 25;
+/// After another signal: it may have come with the first, as to a program and to its group.
+constexpr int kLooksMore = 12;
 }  // namespace
 
 Ending::Ending(const sigset_t& signals, std::function<void()> late)
@@ -24,10 +26,12 @@ Ending::~Ending() {
 }
 
 void Ending::watch() {
-  for (int looks = 0; !done_.load();) {
+  bool asked = false;
+  for (int looks = 0, more = 0; !done_.load();) {
     const int signal = sigtimedwait(&signals_, nullptr, &kLook);
     if (done_.load()) return;
-    if (signal > 0 && signal != SIGUSR1) {
+    asked = asked || (signal > 0 && signal != SIGUSR1);
+    if (asked && ++more > kLooksMore) {
       std::fputs("limber: ended before all files were written\n", stderr);
       std::_Exit(kInput);
     }

@@ -1,5 +1,5 @@
-// Ending: while it lives, the show ends. Another signal ends the program at once, and once the files are whole nobody
-// is waited for long.
+// Ending: while it lives, the show ends. Another signal ends the program a quarter of a second later, and once the
+// files are whole nobody is waited for long.
 #pragma once
 
 #include <atomic>
