@@ -12,11 +12,6 @@ namespace {
 constexpr int kFirstExchanges = 5;  // from where the rows stand
 constexpr int kSweeps = 8;
 constexpr int kLastSweeps = 48;
-/// A rough solve sweeps until so little is missed, or numbers have been looked at so often; then, so that contacts come
-/// last, back.
-constexpr double kRoughMiss = 1e-2;
-constexpr int kRoughWork = 40000;
-constexpr int kSweepsBack = 2;
 /// After so many exchanges, a larger part of the rows that is still broken means that few more will not mend them.
 constexpr int kTrials = 1;
 constexpr double kHopeless = 0.2;
@@ -59,7 +54,6 @@ void BoxSolver::change(int i, double by) {
 }
 
 void BoxSolver::respond() {
-  effort_.lines(static_cast<double>(changed_.size()), stride_);
   subtract_scaled(left_.data(), changed_, stride_);
   changed_.clear();
 }
@@ -71,25 +65,16 @@ void BoxSolver::restart() {
   }
 }
 
-void BoxSolver::sweep_row(int i) {
-  Row& r = row(i);
-  if (!(response(i, i) > 0)) return;
-  bound(r);
-  put(i, std::clamp(r.impulse + left_[nth(i)] * eases_[nth(i)], r.lower, r.upper));
-}
-
 void BoxSolver::sweep() {
-  effort_.lines(size(), stride_);
-  for (int i = 0; i < size(); ++i) sweep_row(i);
-}
-
-void BoxSolver::sweep_back() {
-  effort_.lines(size(), stride_);
-  for (int i = size(); i-- > 0;) sweep_row(i);
+  for (int i = 0; i < size(); ++i) {
+    Row& r = row(i);
+    if (!(response(i, i) > 0)) continue;
+    bound(r);
+    put(i, std::clamp(r.impulse + left_[nth(i)] * eases_[nth(i)], r.lower, r.upper));
+  }
 }
 
 double BoxSolver::missed() {
-  effort_.lines(size(), 0);
   double most = 0;
   for (int i = 0; i < size(); ++i) {
     Row& r = row(i);
@@ -144,7 +129,6 @@ void BoxSolver::assemble() {
     free_.push_back(i);
   }
   const int n = static_cast<int>(free_.size());
-  effort_.lines(n + size(), n);
   width_ = (n + 1) / 2 * 2;
   factor_.assign(nth(n * width_), 0);
   for (int i = 0; i < n; ++i) {
@@ -163,7 +147,6 @@ void BoxSolver::assemble() {
 // Into a lower and an upper triangle, lines exchanged. False where there are none.
 bool BoxSolver::decompose() {
   const int n = static_cast<int>(free_.size());
-  effort_.lines(0.5 * n * n, 0.7 * n);
   exchanged_.resize(nth(n));
   for (int c = 0; c < n; ++c) {
     int top = c;
@@ -194,7 +177,6 @@ bool BoxSolver::decompose() {
 // With the factor at hand: impulses of the free rows that answer what step_ holds.
 void BoxSolver::solve_step() {
   const int n = static_cast<int>(free_.size());
-  effort_.lines(2 * n, 0.5 * n);
   for (int c = 0; c < n; ++c) std::swap(step_[nth(c)], step_[nth(exchanged_[nth(c)])]);
   for (int r = 0; r < n; ++r) step_[nth(r)] -= product(&factor_[nth(r * width_)], step_.data(), r);
   for (int r = n; r-- > 0;) {
@@ -214,7 +196,6 @@ void BoxSolver::correct_free() {
 }
 
 void BoxSolver::follow_normals() {
-  effort_.lines(size(), 0);
   for (int i = 0; i < size(); ++i) {
     if (status_[nth(i)] == free) continue;
     Row& r = row(i);
@@ -249,9 +230,7 @@ void BoxSolver::recenter() {
 }
 
 // Rows whose status their law does not allow change it; returns how many there were.
-int BoxSolver::exchange(bool only_last) {
-  effort_.lines(size(), 0);
-  const double most = tolerance();
+int BoxSolver::exchange(double tolerance, bool only_last) {
   int broken = 0;
   for (int i = size(); i-- > 0;) {
     Row& r = row(i);
@@ -261,10 +240,10 @@ int BoxSolver::exchange(bool only_last) {
     Status to = status;
     const double left = left_[nth(i)];
     if (status == free) {
-      const double slack = 0.1 * most * eases_[nth(i)];
+      const double slack = 0.1 * tolerance * eases_[nth(i)];
       if (r.impulse < r.lower - slack) to = at_lower;
       if (r.impulse > r.upper + slack) to = at_upper;
-    } else if (r.lower < r.upper && (status == at_lower ? left > most : left < -most)) {
+    } else if (r.lower < r.upper && (status == at_lower ? left > tolerance : left < -tolerance)) {
       to = free;
     }
     if (to == status) continue;
@@ -274,17 +253,17 @@ int BoxSolver::exchange(bool only_last) {
   return broken;
 }
 
-bool BoxSolver::pivot(int exchanges) {
+bool BoxSolver::pivot(double tolerance, int exchanges) {
   int fewest = size() + 1;
   int patience = kPatience;
   factored_ = false;
   double before = 1e300;
   for (int round = 0; round < exchanges; ++round) {
     if (!solve_free()) return false;
-    const int broken = exchange(patience == 0);
+    const int broken = exchange(tolerance, patience == 0);
     if (broken == 0) {
       const double miss = take_missed();
-      if (least_missed_ <= tolerance()) return true;
+      if (least_missed_ <= tolerance) return true;
       if (miss > 0.7 * before) return false;
       before = miss;
       continue;
@@ -301,7 +280,7 @@ bool BoxSolver::pivot(int exchanges) {
   return false;
 }
 
-void BoxSolver::begin() {
+double BoxSolver::solve(double tolerance) {
   const std::size_t n = rows_.size();
   start_.resize(n);
   center_.resize(n);
@@ -316,36 +295,13 @@ void BoxSolver::begin() {
     response(i, i) *= 1 + kSoftness;
     eases_[nth(i)] = 1 / response(i, i);
   }
-  restart();
-}
-
-void BoxSolver::end() {
+  search(tolerance);
   for (int i = 0; i < size(); ++i) response(i, i) /= 1 + kSoftness;
-}
-
-double BoxSolver::solve(double tolerance) {
-  asked_ = tolerance;
-  begin();
-  search();
-  end();
   return least_missed_;
 }
 
-double BoxSolver::solve_roughly() {
-  begin();
-  int sweeps = 0;
-  do {
-    for (int i = 0; i < kSweeps; ++i) sweep();
-    sweeps += kSweeps;
-  } while (sweeps * size() * size() < kRoughWork && missed() > kRoughMiss);
-  for (int i = 0; i < kSweepsBack; ++i) sweep_back();
-  read_statuses();
-  take_missed();
-  end();
-  return least_missed_;
-}
-
-void BoxSolver::search() {
+void BoxSolver::search(double tolerance) {
+  restart();
   read_statuses();
   for (int i = 0; i < size(); ++i) {
     const Row& r = row(i);
@@ -357,15 +313,15 @@ void BoxSolver::search() {
       status_[nth(i)] = alone < r.lower ? at_lower : alone > r.upper ? at_upper : free;
     }
   }
-  if (pivot(kFirstExchanges)) return;
+  if (pivot(tolerance, kFirstExchanges)) return;
   restart();
   for (int i = 0; i < size(); ++i) change(i, row(i).ahead);
   respond();
   for (int i = 0; i < kSweeps; ++i) sweep();
   take_missed();
-  if (least_missed_ <= tolerance()) return;
-  if (settle_friction()) {
-    if (frozen_ && !effort_.over()) agree_at_last();
+  if (least_missed_ <= tolerance) return;
+  if (settle_friction(tolerance)) {
+    if (frozen_) agree_at_last(tolerance);
     return;
   }
   for (int i = 0; i < kLastSweeps; ++i) sweep();

@@ -6,7 +6,6 @@
 #include <vector>
 
 #include "sim/dense.h"
-#include "sim/effort.h"
 #include "sim/free_factor.h"
 
 namespace limber {
@@ -28,7 +27,6 @@ class BoxSolver {
     double ahead = 0;        ///< The search begins with so much more than its impulse.
   };
 
-  explicit BoxSolver(Effort& effort) : effort_(effort), steady_(effort) {}
   /// Rows and a response of zeros.
   void start(int rows);
   int size() const { return static_cast<int>(rows_.size()); }
@@ -39,13 +37,10 @@ class BoxSolver {
     return response_[static_cast<std::size_t>(i) * static_cast<std::size_t>(stride_) + static_cast<std::size_t>(j)];
   }
 
-  /// Until no row misses its law by more than `tolerance` (in units of rate), or what the effort allows by now. Returns
-  /// by how much one still does.
+  /// Until no row misses its law by more than `tolerance` (in units of rate). Returns by how much one still does.
   /// Where friction and its normals agree on nothing (they need not), friction's bounds are those of the normals one
   /// round before; all other laws hold.
   double solve(double tolerance);
-  /// Sweeps alone, and what a row still misses then: for a step that has cost too much already.
-  double solve_roughly();
   /// Where a row stood in what was found last.
   Status status(int i) const { return status_[static_cast<std::size_t>(i)]; }
 
@@ -54,10 +49,7 @@ class BoxSolver {
   static constexpr int kMostFree = 90;
   static std::size_t nth(int i) { return static_cast<std::size_t>(i); }
   void bound(Row& row) const;
-  double tolerance() const { return effort_.tolerance(asked_); }
-  void begin();
-  void end();
-  void search();
+  void search(double tolerance);
   void restart();
   void recenter();
   void apply(int i, double change);
@@ -65,14 +57,12 @@ class BoxSolver {
   void change(int i, double by);
   void change_to(int i, double impulse) { change(i, impulse - row(i).impulse); }
   void respond();
-  void sweep_row(int i);
   void sweep();
-  void sweep_back();
   double missed();
   double take_missed();
   void read_statuses();
-  bool pivot(int exchanges);
-  int exchange(bool only_last);
+  bool pivot(double tolerance, int exchanges);
+  int exchange(double tolerance, bool only_last);
   void follow_normals();
   bool solve_free();
   void assemble();
@@ -80,17 +70,17 @@ class BoxSolver {
   bool decompose();
   void solve_step();
   void correct_free();
-  bool descend();
+  bool descend(double tolerance);
   bool choose_free();
   void step_free();
   bool step_within_bounds();
-  int release(bool only_one);
+  int release(double tolerance, bool only_one);
   struct Change {  // of a row's status, on the path
     int row = -1;
     double way = 0;
     Status to = free;
   };
-  bool follow_path(int changes);
+  bool follow_path(double tolerance, int changes);
   void cover();
   void uncover(double part);
   bool lead();
@@ -101,11 +91,9 @@ class BoxSolver {
   bool take_change(const Change& change);
   void respond(std::vector<double>& to, int i, double change) const;
   void hold_friction(double part);
-  bool settle_friction();
-  void agree_at_last();
+  bool settle_friction(double tolerance);
+  void agree_at_last(double tolerance);
 
-  Effort& effort_;
-  double asked_ = 0;  // tolerance of a cheap step
   int stride_ = 0;
   std::vector<Row> rows_;
   std::vector<double> left_;

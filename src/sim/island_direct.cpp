@@ -34,15 +34,6 @@ constexpr double kFastest = 1e5;
 /// More than this no step with contacts may give one, m/s: where laws contradict each other (a link that begins inside
 /// of what never moves), to meet them all takes absurd impulses, and the sweeps, which miss them, do better.
 constexpr double kMostPush = 150;
-/// Work that should do for a step: for any, for each body, and for what contacts have to do with each other.
-constexpr double kEnough = 4e5;
-constexpr double kEnoughForBody = 1e4;
-constexpr double kEnoughForContacts = 1;
-/// Work of a rough end: for each body, and for each pair of rows.
-constexpr double kRoughForBody = 3e3;
-constexpr double kRoughForPair = 15;
-/// Where it misses a law by more than this, m/s and rad/s, the sweeps do better.
-constexpr double kMostRoughMiss = 10;
 
 Quat turned(const Vec3& way) {
   const double angle = glm::length(way);
@@ -92,25 +83,15 @@ int IslandDirect::give_up_broken() {
   return broken;
 }
 
-// Trees by themselves, contacts as they are; then what stands around them, until no law is broken, or it is over.
+// Trees by themselves, contacts as they are; then what stands around them, until no law is broken.
 bool IslandDirect::settle() {
-  const double before = effort_.spent();
-  const bool settled = settle_trees() && (outer_.empty() || settle_outer()) && finite();
-  settle_cost_ = effort_.spent() - before;
-  return settled;
-}
-
-bool IslandDirect::settle_trees() {
   for (const Tree& t : trees_) {
     if (!system_.settle(t.first, t.last, kExchanges)) return false;
     const bool again = !outer_.empty() && system_.give_up_remembered(t.first, t.last) > 0;
     if (again && !system_.refresh(t.first, t.last)) return false;
   }
   collect_axes();
-  return true;
-}
-
-bool IslandDirect::settle_outer() {
+  if (outer_.empty()) return finite();
   system_.keep();
   for (OuterRow& row : outer_) row.kept = row.impulse;
   take_contacts();
@@ -118,55 +99,23 @@ bool IslandDirect::settle_outer() {
     bool pinned = false;
     double missed = 0;
     do {
-      effort_.keep(rough_end());
-      over_ = effort_.over();
-      if (over_) return true;
       if (!build_responses()) return false;
       pinned = give_up_pinned();
-      missed = pinned ? 0 : solve_outer(Solve::exactly);
+      missed = pinned ? 0 : solve_outer();
     } while (!pinned && take_contacts() > 0);
-    const bool solved = missed <= effort_.tolerance(kOuterMiss);
-    over_ = !solved && effort_.over();
-    if (over_) return true;
     int broken = pinned ? 1 : give_up_broken();
     // too stiff to be solved: then every motor and limit that contacts feel gives way as far as its force says
-    if ((!solved || round == kRounds - 2) && give_up_touched() > 0) broken++;
-    if (broken == 0) return std::isfinite(missed);
-    go_back();
+    if ((!(missed < kOuterMiss) || round == kRounds - 2) && give_up_touched() > 0) broken++;
+    if (broken == 0) return std::isfinite(missed) && finite();
+    // what was found with other rows in force must not stay
+    system_.go_back();
+    for (OuterRow& row : outer_) row.impulse = row.kept;
     for (const Tree& t : trees_) {
       if (!system_.refresh(t.first, t.last)) return false;
     }
     collect_axes();
   }
   return false;
-}
-
-// What was found with other rows in force must not stay.
-void IslandDirect::go_back() {
-  system_.go_back();
-  for (OuterRow& row : outer_) row.impulse = row.kept;
-}
-
-// The work of a rough end.
-double IslandDirect::rough_end() const {
-  const auto boxed = std::count_if(outer_.begin(), outer_.end(), [](const OuterRow& r) { return !r.aside; });
-  const auto rows = static_cast<double>(boxed + system_.trees.size());
-  return kRoughForBody * system_.trees.size() + kRoughForPair * rows * rows;
-}
-
-// A step that is over: every motor and limit gives way as far as its force says, and what contacts and they want of
-// each other is swept. Locks hold as ever.
-bool IslandDirect::end_roughly(const IslandPools& pools, double h) {
-  go_back();
-  const bool slower = limit_turns(pools, h);
-  for (const Tree& t : trees_) {
-    if (slower && !system_.refresh(t.first, t.last)) return false;
-    system_.give_up_all(t.first, t.last);
-    if (!system_.refresh(t.first, t.last)) return false;
-  }
-  collect_axes();
-  take_contacts();
-  return build_responses() && solve_outer(Solve::roughly) < kMostRoughMiss && finite();
 }
 
 // A body that would turn far in one step goes straight where it should go round: motors and limits of its tree ask for
@@ -348,28 +297,24 @@ bool IslandDirect::settle_all(IslandPools& pools, double h) {
   collect_loops(pools);
   fixed_outer_ = outer_.size();
   bool settled = settle();
-  for (int pass = 0; pass < 3 && settled && !over_ && limit_turns(pools, h); ++pass) settled = settle();
-  return settled && (!over_ || end_roughly(pools, h));
+  for (int pass = 0; pass < 3 && settled && limit_turns(pools, h); ++pass) settled = settle();
+  return settled;
 }
 
-// Bends, until they fit or there is no time for another, and of passive trees as far as they may.
+// Bends, until they fit, and of passive trees as far as they may.
 bool IslandDirect::bend_all(const IslandPools& pools, double h) {
-  gapes_ = over_;
-  if (over_) return true;
+  gapes_ = false;
   unbent_work_.clear();
   for (const Tree& t : trees_) unbent_work_.push_back(passive(t) ? work_of_locks(t, pools) : 0);
   bool solved = true;
   bool bending = true;
-  const auto time_left = [this] { return !over_ && !effort_.over(settle_cost_); };
-  for (int pass = 0; pass < kBends && solved && bending && time_left(); ++pass) {
+  for (int pass = 0; pass < kBends && solved && bending; ++pass) {
     bending = bend_locks(pools, h);
     if (bending) solved = settle();
   }
   gapes_ = gapes_ || bending;
-  for (int pass = 0; pass < kEasings && solved && !over_ && ease_bends(pools, h); ++pass) solved = settle();
-  if (!solved || !over_) return solved;
-  gapes_ = true;
-  return end_roughly(pools, h);
+  for (int pass = 0; pass < kEasings && solved && ease_bends(pools, h); ++pass) solved = settle();
+  return solved;
 }
 
 bool IslandDirect::solve(IslandPools pools, const btContactSolverInfo& info) {
@@ -379,17 +324,14 @@ bool IslandDirect::solve(IslandPools pools, const btContactSolverInfo& info) {
   }
   const double h = static_cast<double>(info.m_timeStep);
   before_calm_.clear();
-  over_ = false;
   bool solved = build_forest(pools);
-  const double rows = pools.contacts.size() + pools.frictions.size() + pools.rollings.size();
-  effort_.begin(kEnough + kEnoughForBody * system_.trees.size() + kEnoughForContacts * rows * rows);
   if (solved && crowded(pools)) {
     counts_.plain++;
     return false;
   }
   if (solved && calm_whips(pools, h, Whips::before)) solved = build_forest(pools);
   if (solved) solved = settle_all(pools, h);
-  if (solved && calm_whips(pools, h, Whips::after) && !over_) solved = build_forest(pools) && settle_all(pools, h);
+  if (solved && calm_whips(pools, h, Whips::after)) solved = build_forest(pools) && settle_all(pools, h);
   if (solved) solved = bend_all(pools, h);
   if (!solved || contradicts(system_, static_cast<int>(body_of_.size()), pools)) {
     counts_.fallbacks++;
@@ -409,7 +351,6 @@ bool IslandDirect::solve(IslandPools pools, const btContactSolverInfo& info) {
     taken = std::clamp(taken - (work < 0 ? kGivenBack : 1.0) * work, 0.0, kMostGivenBack);
   }
   write(pools);
-  effort_.keep(0);
   push_apart(pools, info);
   if (measured_) take_residuals(pools);
   if (gapes_) close_joints(pools, info);

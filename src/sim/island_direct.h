@@ -10,7 +10,6 @@
 
 #include "sim/box_solver.h"
 #include "sim/bullet.h"
-#include "sim/effort.h"
 #include "sim/joint_constraint.h"
 #include "sim/tree_rows.h"
 
@@ -127,14 +126,8 @@ class IslandDirect {
   bool give_up_pinned();
   int give_up_touched();
   int give_up_broken();
-  enum class Solve : std::uint8_t { exactly, roughly };
-  double solve_outer(Solve how);
-  void go_back();
-  double rough_end() const;
+  double solve_outer();
   bool settle();
-  bool settle_trees();
-  bool settle_outer();
-  bool end_roughly(const IslandPools& pools, double h);
   bool settle_all(IslandPools& pools, double h);
   bool bend_all(const IslandPools& pools, double h);
   enum class Whips : std::uint8_t { before, after };  // as the step began; as it was solved
@@ -175,10 +168,9 @@ class IslandDirect {
   /// A contact is pinned when it answers to less than this part of what its bodies alone would.
   static constexpr double kPinned = 1e-6;
 
-  Effort effort_;
-  TreeRows system_{effort_};
-  BoxSolver box_{effort_};
-  BoxSolver push_box_{effort_};
+  TreeRows system_;
+  BoxSolver box_;
+  BoxSolver push_box_;
   std::vector<Link> links_;
   std::vector<Tree> trees_;
   std::vector<int> tree_of_;  // node
@@ -201,10 +193,8 @@ class IslandDirect {
   std::size_t fixed_outer_ = 0;               // contacts and loops; behind them axes that were given up
   std::vector<double> unbent_work_;           // tree: of its locks, unbent, J
   std::uint64_t box_factors_ = 0;             // that box_ has the responses of
-  bool over_ = false;                         // the step costs too much: what is left is solved roughly
-  double settle_cost_ = 0;                    // of the last settle()
   bool gapes_ = false;                        // perhaps: bends do not fit yet, or do not know of so wide a turn
-  TreeRows poses_{effort_};                   // the trees where the step will end
+  TreeRows poses_;                            // the trees where the step will end
   std::vector<Pose> ends_;                    // node: there
   std::vector<std::array<double, 6>> goals_;  // link: where its locked axes are to be then
   bool measured_ = false;

@@ -9,9 +9,6 @@
 namespace limber {
 namespace {
 
-/// What a free axis costs on the way of an impulse to the root, in numbers.
-constexpr double kAxisNumbers = 24;
-
 Spatial pull_of(const btVector3& linear, const btVector3& angular) { return {from_bt(linear), from_bt(angular)}; }
 
 BoxSolver::Status in_box(TreeRow::Status status) {
@@ -152,9 +149,6 @@ void IslandDirect::respond(BoxSolver& box, std::span<const int> rows) {
   felt_.clear();
   reaches_.resize(rows.size());
   for (std::size_t i = 0; i < rows.size(); ++i) feel(outer_[at(rows[i])], reaches_[i]);
-  const auto felt = static_cast<double>(felt_.size());
-  effort_.lines(felt, kAxisNumbers);
-  effort_.lines(0.5 * count * count, felt / (count + 1));
   const auto together = [this](const Reach& a, const Reach& b) {
     if (a.tree != b.tree || a.tree < 0) return 0.0;
     return product(felt_.data() + a.begin, felt_.data() + b.begin, std::min(a.count, b.count));
@@ -233,7 +227,7 @@ int IslandDirect::give_up_touched() {
 }
 
 // With the responses at hand: solves for all outer rows, and lets the trees follow. Returns what a row still misses.
-double IslandDirect::solve_outer(Solve how) {
+double IslandDirect::solve_outer() {
   for (int i = 0; i < box_.size(); ++i) {
     OuterRow& row = outer_[at(boxed_[at(i)])];
     row.begun = row.axis != nullptr ? row.axis->impulse : row.impulse;
@@ -248,7 +242,7 @@ double IslandDirect::solve_outer(Solve how) {
         row.guess,
         row.likely - row.begun};
   }
-  const double missed = how == Solve::exactly ? box_.solve(kOuterTolerance) : box_.solve_roughly();
+  const double missed = box_.solve(kOuterTolerance);
   for (int i = 0; i < box_.size(); ++i) {
     OuterRow& row = outer_[at(boxed_[at(i)])];
     row.impulse = box_.row(i).impulse;

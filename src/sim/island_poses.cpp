@@ -13,8 +13,6 @@ constexpr double kWorthClosing = 1e-3;
 constexpr double kClosed = 1e-4;
 /// So often the way there is taken, each time from where the one before led.
 constexpr int kClosings = 8;
-/// And so often where the step has cost too much.
-constexpr int kFewClosings = 6;
 /// No body turns further than this on one such way, rad.
 constexpr double kFarthestTurn = 0.7;
 
@@ -142,7 +140,6 @@ void IslandDirect::close_joints(IslandPools& pools, const btContactSolverInfo& i
   const double first = gape();
   double left = first;
   for (int pass = 0; pass < kClosings && left > (pass == 0 ? kWorthClosing : kClosed); ++pass) {
-    if (pass >= kFewClosings && effort_.over()) break;
     if (!build_poses(pools)) break;
     double farthest = kFarthestTurn;
     for (std::size_t i = 0; i < ends_.size(); ++i) {

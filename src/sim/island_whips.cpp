@@ -74,10 +74,6 @@ bool IslandDirect::calm_whips(IslandPools& pools, double h, Whips which) {
       btSolverBody& body = pools.bodies[body_of_[at(i)]];
       const Vec3 arm = center_of(*body.m_originalBody) - rigid.center;
       const Spatial inner = moving(i, pools, which) - carried(rigid.velocity, arm);
-      if (over_) {  // there is no time to solve it once more
-        system_.set_change(i, system_.change(i) + inner * less);
-        continue;
-      }
       body.m_deltaLinearVelocity += to_bt(inner.linear * less);
       body.m_deltaAngularVelocity += to_bt(inner.angular * less);
     }

@@ -254,19 +254,6 @@ TEST(IslandDirect, RandomTreesOverAFloorArePartedLessThanStocks) {
   }
 }
 
-// Seventeen servos that give way while the arm lies on the floor: some steps would take ten times as long as others.
-// They end before, and then a contact misses its law; locks never do.
-TEST(IslandDirect, AStepThatCostsTooMuchEndsWithItsLocksHeld) {
-  RawScene s = raw_at_step(raw_arm(17, 1, 5, 0.6, true), 1.0 / 30);
-  const double stock = play(*RawPlayer::make(s, RawSolver::stock), 180).gap;
-  s.measure = true;
-  const auto player = RawPlayer::make(s, RawSolver::direct);
-  EXPECT_LT(play(*player, 180).gap, stock);
-  EXPECT_GT(player->direct().contact, 1e-4) << "no step was over";
-  EXPECT_LT(player->direct().locked, 1e-3);
-  EXPECT_EQ(player->direct().fallbacks, 0);
-}
-
 // One end of a beam stands deep in the floor, the other hangs on a heavy part: pushed out, it turns.
 TEST(IslandDirect, APushThatTurnsPartsLeavesTheirJointsClosed) {
   RawScene s;

@@ -29,8 +29,7 @@ struct Hinge {
     rows.correct(0, 1);
   }
   const TreeRow& motor() { return rows.rows().back(); }
-  Effort effort;
-  TreeRows rows{effort};
+  TreeRows rows;
 };
 
 // The motor reaches its speed, until something turns against it with more than it has. Then it is given up, and the
