@@ -42,13 +42,14 @@ TEST_F(CollectorTest, RestsDuringCalls) {
 }
 
 TEST_F(CollectorTest, RestsBetweenSlicesToo) {
-  run("kept = {} for i = 1, 50000 do kept[i] = { i } end");
-  litter(50000);
-  collector->after_tick();  // more to do than a slice can
+  run("kept = {} for i = 1, 20000 do kept[i] = { i } end");
+  litter(20000);
+  collector->after_tick();  // to its end or not: how much a slice can do is the machine's affair
   collector->begin_calls();
   const std::size_t before = memory.used();
-  litter(100000);
-  EXPECT_GT(memory.used(), before + 2 * kMegabyte);
+  ASSERT_LT(before, 5 * kMegabyte);
+  litter(200000);  // a collector that works waits for twice as much at most
+  EXPECT_GT(memory.used(), before + 6 * kMegabyte);
 }
 
 TEST_F(CollectorTest, WorksDuringCallsWhenMemoryIsScarce) {
