@@ -9,6 +9,7 @@ namespace {
 
 constexpr int kTiedExchanges = 4;
 constexpr int kDescents = 60;
+constexpr int kBriefDescents = 10;  // where there is no time for more
 constexpr int kBlockReleases = 30;
 constexpr int kRecenterings = 5;
 constexpr int kFrictionRounds = 12;
@@ -20,22 +21,22 @@ constexpr int kFullRounds = 3;  // after them friction's bounds follow by halves
 
 // Bounds that stay make it a convex problem: from the least within the free rows to that of the next set of them, cut
 // off at bounds where that still leads down. Each step makes the dual energy less.
-bool BoxSolver::descend(double tolerance) {
+bool BoxSolver::descend() {
   before_.resize(rows_.size());
   follow_normals();
   int settled = 0;
-  for (int round = 0; round < kDescents; ++round) {
+  for (int round = 0; round < (effort_.over() ? kBriefDescents : kDescents); ++round) {
     if (!choose_free()) return false;
     step_free();
     if (!step_within_bounds()) continue;
-    if (release(tolerance, round > kBlockReleases) > 0) continue;
+    if (release(round > kBlockReleases) > 0) continue;
     recenter();
     least_missed_ = missed();
-    if (least_missed_ <= tolerance || ++settled == kRecenterings) return true;
+    if (least_missed_ <= tolerance() || ++settled == kRecenterings) return true;
   }
   recenter();
   least_missed_ = missed();
-  return false;
+  return effort_.over();
 }
 
 bool BoxSolver::choose_free() {
@@ -60,6 +61,7 @@ void BoxSolver::step_free() {
 
 // From before_ to where the free rows want to be, or as far as that may be gone. True: all of it.
 bool BoxSolver::step_within_bounds() {
+  effort_.lines(2 * size(), 0);
   const std::span<const int> rows = steady_.rows();
   double reach = 1;
   for (const int i : rows) {
@@ -101,7 +103,9 @@ bool BoxSolver::step_within_bounds() {
 }
 
 // Rows at their bounds that would leave them become free: all, or the one that wants it most.
-int BoxSolver::release(double tolerance, bool only_one) {
+int BoxSolver::release(bool only_one) {
+  effort_.lines(size(), 0);
+  const double least = 0.5 * tolerance();
   int released = 0;
   int most = -1;
   double wish = 0;
@@ -109,7 +113,7 @@ int BoxSolver::release(double tolerance, bool only_one) {
     const Row& r = row(i);
     if (status_[nth(i)] == free || !(response(i, i) > 0) || !(r.lower < r.upper)) continue;
     const double wants = status_[nth(i)] == at_lower ? left_[nth(i)] : -left_[nth(i)];
-    if (!(wants > 0.5 * tolerance)) continue;
+    if (!(wants > least)) continue;
     released++;
     if (!only_one) status_[nth(i)] = free;
     if (wants > wish) {
@@ -138,22 +142,23 @@ void BoxSolver::hold_friction(double part) {
 
 // Friction bounded by the normals of the round before: a problem that always has a solution, and one that the tied one
 // is near.
-bool BoxSolver::settle_friction(double tolerance) {
+bool BoxSolver::settle_friction() {
   steady_.start(response_, stride_);
   for (int round = 0; round < kFrictionRounds; ++round) {
     hold_friction(round < kFullRounds ? 1 : 0.5);
     for (int i = 0; i < size(); ++i) change_to(i, std::clamp(row(i).impulse, row(i).lower, row(i).upper));
     respond();
     if (round == 0) read_statuses();
-    if (!descend(tolerance)) return false;
-    if (round + 1 == kFrictionRounds) break;
+    if (!descend()) return false;
+    if (round + 1 == kFrictionRounds || effort_.over()) break;
     frozen_ = false;
-    if (missed() <= tolerance) return true;
+    least_missed_ = missed();
+    if (least_missed_ <= tolerance()) return true;
     for (int i = 0; i < size(); ++i) settled_[nth(i)] = row(i).impulse;
     settled_status_ = status_;
     const double settled_missed = least_missed_;
     least_missed_ = 1e300;
-    if (pivot(tolerance, kTiedExchanges)) return true;
+    if (pivot(kTiedExchanges)) return true;
     least_missed_ = settled_missed;
     for (int i = 0; i < size(); ++i) change_to(i, settled_[nth(i)]);
     respond();
@@ -164,16 +169,16 @@ bool BoxSolver::settle_friction(double tolerance) {
 }
 
 // Where no round agreed with its normals, a solution may be found on the path from the last one, or that stays.
-void BoxSolver::agree_at_last(double tolerance) {
+void BoxSolver::agree_at_last() {
   for (int i = 0; i < size(); ++i) settled_[nth(i)] = row(i).impulse;
   const double settled_missed = least_missed_;
   frozen_ = false;
   least_missed_ = 1e300;
   const int changes = kMostChanges * (size() + 8);
-  if (follow_path(tolerance, changes)) return;
+  if (follow_path(changes)) return;
   for (int i = 0; i < size(); ++i) change_to(i, std::clamp(0.0, row(i).lower, row(i).upper));
   respond();
-  if (follow_path(tolerance, changes)) return;
+  if (follow_path(changes)) return;
   for (int i = 0; i < size(); ++i) change_to(i, settled_[nth(i)]);
   respond();
   least_missed_ = settled_missed;

@@ -54,6 +54,7 @@ bool BoxSolver::lead() {
     if (slides_with(i) >= 0) along_[nth(i)] = (status_[nth(i)] == at_upper ? 1 : -1) * room_along(i, free);
   }
   left_along_ = cover_;
+  effort_.lines(size(), static_cast<double>(free_.size()));
   for (int i = 0; i < size(); ++i) {
     if (along_[nth(i)] != 0) respond(left_along_, i, along_[nth(i)]);
   }
@@ -128,7 +129,7 @@ bool BoxSolver::take_change(const Change& change) {
   return true;
 }
 
-bool BoxSolver::follow_path(double tolerance, int changes) {
+bool BoxSolver::follow_path(int changes) {
   if (std::any_of(rows_.begin(), rows_.end(), [](const Row& r) { return r.most > 0; })) return false;
   for (int i = 0; i < size(); ++i) {
     bound(row(i));
@@ -140,7 +141,7 @@ bool BoxSolver::follow_path(double tolerance, int changes) {
   double sign = -1;
   int entered = -1;
   Status was = free;
-  for (; changes > 0 && lead(); --changes) {
+  for (; changes > 0 && !effort_.over() && lead(); --changes) {
     if (entered >= 0) {
       const Status now = status_[nth(entered)];
       const double opens = now == free ? room_along(entered, was)
@@ -151,7 +152,7 @@ bool BoxSolver::follow_path(double tolerance, int changes) {
     if (next.row < 0 && sign > 0) break;
     walk(sign * next.way);
     covered += sign * next.way;
-    if (next.row < 0) return pivot(tolerance, kPolishes);
+    if (next.row < 0) return pivot(kPolishes);
     was = status_[nth(next.row)];
     entered = take_change(next) ? next.row : -1;
   }

@@ -12,6 +12,9 @@ namespace {
 constexpr int kFirstExchanges = 5;  // from where the rows stand
 constexpr int kSweeps = 8;
 constexpr int kLastSweeps = 48;
+/// Where there is no time for more.
+constexpr int kBriefSweeps = 16;
+constexpr int kSweepsBetweenLooks = 4;
 /// After so many exchanges, a larger part of the rows that is still broken means that few more will not mend them.
 constexpr int kTrials = 1;
 constexpr double kHopeless = 0.2;
@@ -54,6 +57,7 @@ void BoxSolver::change(int i, double by) {
 }
 
 void BoxSolver::respond() {
+  effort_.lines(static_cast<double>(changed_.size()), stride_);
   subtract_scaled(left_.data(), changed_, stride_);
   changed_.clear();
 }
@@ -66,6 +70,7 @@ void BoxSolver::restart() {
 }
 
 void BoxSolver::sweep() {
+  effort_.lines(size(), stride_);
   for (int i = 0; i < size(); ++i) {
     Row& r = row(i);
     if (!(response(i, i) > 0)) continue;
@@ -74,7 +79,17 @@ void BoxSolver::sweep() {
   }
 }
 
+// Until no row misses its law by more than it may.
+void BoxSolver::sweep(int most) {
+  double miss = 1e300;
+  for (int i = 0; i < most && miss > tolerance(); i += kSweepsBetweenLooks) {
+    for (int k = 0; k < kSweepsBetweenLooks; ++k) sweep();
+    miss = missed();
+  }
+}
+
 double BoxSolver::missed() {
+  effort_.lines(size(), 0);
   double most = 0;
   for (int i = 0; i < size(); ++i) {
     Row& r = row(i);
@@ -129,6 +144,7 @@ void BoxSolver::assemble() {
     free_.push_back(i);
   }
   const int n = static_cast<int>(free_.size());
+  effort_.lines(n + size(), n);
   width_ = (n + 1) / 2 * 2;
   factor_.assign(nth(n * width_), 0);
   for (int i = 0; i < n; ++i) {
@@ -147,6 +163,7 @@ void BoxSolver::assemble() {
 // Into a lower and an upper triangle, lines exchanged. False where there are none.
 bool BoxSolver::decompose() {
   const int n = static_cast<int>(free_.size());
+  effort_.lines(0.5 * n * n, 0.7 * n);
   exchanged_.resize(nth(n));
   for (int c = 0; c < n; ++c) {
     int top = c;
@@ -177,6 +194,7 @@ bool BoxSolver::decompose() {
 // With the factor at hand: impulses of the free rows that answer what step_ holds.
 void BoxSolver::solve_step() {
   const int n = static_cast<int>(free_.size());
+  effort_.lines(2 * n, 0.5 * n);
   for (int c = 0; c < n; ++c) std::swap(step_[nth(c)], step_[nth(exchanged_[nth(c)])]);
   for (int r = 0; r < n; ++r) step_[nth(r)] -= product(&factor_[nth(r * width_)], step_.data(), r);
   for (int r = n; r-- > 0;) {
@@ -196,6 +214,7 @@ void BoxSolver::correct_free() {
 }
 
 void BoxSolver::follow_normals() {
+  effort_.lines(size(), 0);
   for (int i = 0; i < size(); ++i) {
     if (status_[nth(i)] == free) continue;
     Row& r = row(i);
@@ -230,7 +249,9 @@ void BoxSolver::recenter() {
 }
 
 // Rows whose status their law does not allow change it; returns how many there were.
-int BoxSolver::exchange(double tolerance, bool only_last) {
+int BoxSolver::exchange(bool only_last) {
+  effort_.lines(size(), 0);
+  const double most = tolerance();
   int broken = 0;
   for (int i = size(); i-- > 0;) {
     Row& r = row(i);
@@ -240,10 +261,10 @@ int BoxSolver::exchange(double tolerance, bool only_last) {
     Status to = status;
     const double left = left_[nth(i)];
     if (status == free) {
-      const double slack = 0.1 * tolerance * eases_[nth(i)];
+      const double slack = 0.1 * most * eases_[nth(i)];
       if (r.impulse < r.lower - slack) to = at_lower;
       if (r.impulse > r.upper + slack) to = at_upper;
-    } else if (r.lower < r.upper && (status == at_lower ? left > tolerance : left < -tolerance)) {
+    } else if (r.lower < r.upper && (status == at_lower ? left > most : left < -most)) {
       to = free;
     }
     if (to == status) continue;
@@ -253,17 +274,17 @@ int BoxSolver::exchange(double tolerance, bool only_last) {
   return broken;
 }
 
-bool BoxSolver::pivot(double tolerance, int exchanges) {
+bool BoxSolver::pivot(int exchanges) {
   int fewest = size() + 1;
   int patience = kPatience;
   factored_ = false;
   double before = 1e300;
   for (int round = 0; round < exchanges; ++round) {
     if (!solve_free()) return false;
-    const int broken = exchange(tolerance, patience == 0);
+    const int broken = exchange(patience == 0);
     if (broken == 0) {
       const double miss = take_missed();
-      if (least_missed_ <= tolerance) return true;
+      if (least_missed_ <= tolerance()) return true;
       if (miss > 0.7 * before) return false;
       before = miss;
       continue;
@@ -280,7 +301,7 @@ bool BoxSolver::pivot(double tolerance, int exchanges) {
   return false;
 }
 
-double BoxSolver::solve(double tolerance) {
+void BoxSolver::begin() {
   const std::size_t n = rows_.size();
   start_.resize(n);
   center_.resize(n);
@@ -295,13 +316,61 @@ double BoxSolver::solve(double tolerance) {
     response(i, i) *= 1 + kSoftness;
     eases_[nth(i)] = 1 / response(i, i);
   }
-  search(tolerance);
+  restart();
+}
+
+void BoxSolver::end() {
   for (int i = 0; i < size(); ++i) response(i, i) /= 1 + kSoftness;
+}
+
+double BoxSolver::solve(double tolerance) {
+  asked_ = tolerance;
+  begin();
+  if (effort_.over()) {
+    search_briefly();
+  } else {
+    search();
+  }
+  end();
   return least_missed_;
 }
 
-void BoxSolver::search(double tolerance) {
+double BoxSolver::polish() {
+  begin();
+  const double before = missed();
+  if (before > tolerance()) sweep(kBriefSweeps);
+  take_missed();
+  if (!(least_missed_ < before)) {
+    restart();
+    least_missed_ = before;
+  }
+  read_statuses();
+  end();
+  return least_missed_;
+}
+
+void BoxSolver::start_ahead() {
   restart();
+  for (int i = 0; i < size(); ++i) change(i, row(i).ahead);
+  respond();
+}
+
+// From where the rows may stand: sweeps, and where they do not do, friction held to the normals that they found.
+void BoxSolver::search_briefly() {
+  start_ahead();
+  sweep(kBriefSweeps);
+  read_statuses();
+  take_missed();
+  if (least_missed_ > tolerance() && !settle_friction()) sweep_last();
+}
+
+void BoxSolver::sweep_last() {
+  for (int i = 0; i < kLastSweeps; ++i) sweep();
+  recenter();
+  least_missed_ = missed();
+}
+
+void BoxSolver::search() {
   read_statuses();
   for (int i = 0; i < size(); ++i) {
     const Row& r = row(i);
@@ -313,20 +382,16 @@ void BoxSolver::search(double tolerance) {
       status_[nth(i)] = alone < r.lower ? at_lower : alone > r.upper ? at_upper : free;
     }
   }
-  if (pivot(tolerance, kFirstExchanges)) return;
-  restart();
-  for (int i = 0; i < size(); ++i) change(i, row(i).ahead);
-  respond();
+  if (pivot(kFirstExchanges)) return;
+  start_ahead();
   for (int i = 0; i < kSweeps; ++i) sweep();
   take_missed();
-  if (least_missed_ <= tolerance) return;
-  if (settle_friction(tolerance)) {
-    if (frozen_) agree_at_last(tolerance);
-    return;
+  if (least_missed_ <= tolerance()) return;
+  if (!settle_friction()) {
+    sweep_last();
+  } else if (frozen_ && !effort_.over()) {
+    agree_at_last();
   }
-  for (int i = 0; i < kLastSweeps; ++i) sweep();
-  recenter();
-  least_missed_ = missed();
 }
 
 }  // namespace limber

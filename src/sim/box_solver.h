@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "sim/dense.h"
+#include "sim/effort.h"
 #include "sim/free_factor.h"
 
 namespace limber {
@@ -27,6 +28,7 @@ class BoxSolver {
     double ahead = 0;        ///< The search begins with so much more than its impulse.
   };
 
+  explicit BoxSolver(Effort& effort) : effort_(effort), steady_(effort) {}
   /// Rows and a response of zeros.
   void start(int rows);
   int size() const { return static_cast<int>(rows_.size()); }
@@ -37,10 +39,15 @@ class BoxSolver {
     return response_[static_cast<std::size_t>(i) * static_cast<std::size_t>(stride_) + static_cast<std::size_t>(j)];
   }
 
-  /// Until no row misses its law by more than `tolerance` (in units of rate). Returns by how much one still does.
-  /// Where friction and its normals agree on nothing (they need not), friction's bounds are those of the normals one
-  /// round before; all other laws hold.
+  /// Until no row misses its law by more than `tolerance` (in units of rate), or what the effort allows by now. Returns
+  /// by how much one still does.
+  /// Where friction and its normals agree on nothing (they need not), or there is no time left to agree, friction's
+  /// bounds are those of the normals one round before; all other laws hold.
   double solve(double tolerance);
+  /// Whether friction's bounds are those of the normals that were found.
+  bool agrees() const { return !frozen_; }
+  /// Where they are not: brings them nearer to each other, from where the rows stand. Returns what a row still misses.
+  double polish();
   /// Where a row stood in what was found last.
   Status status(int i) const { return status_[static_cast<std::size_t>(i)]; }
 
@@ -49,7 +56,13 @@ class BoxSolver {
   static constexpr int kMostFree = 90;
   static std::size_t nth(int i) { return static_cast<std::size_t>(i); }
   void bound(Row& row) const;
-  void search(double tolerance);
+  double tolerance() const { return effort_.tolerance(asked_); }
+  void begin();
+  void end();
+  void search();
+  void search_briefly();
+  void sweep_last();
+  void start_ahead();
   void restart();
   void recenter();
   void apply(int i, double change);
@@ -58,11 +71,12 @@ class BoxSolver {
   void change_to(int i, double impulse) { change(i, impulse - row(i).impulse); }
   void respond();
   void sweep();
+  void sweep(int most);
   double missed();
   double take_missed();
   void read_statuses();
-  bool pivot(double tolerance, int exchanges);
-  int exchange(double tolerance, bool only_last);
+  bool pivot(int exchanges);
+  int exchange(bool only_last);
   void follow_normals();
   bool solve_free();
   void assemble();
@@ -70,17 +84,17 @@ class BoxSolver {
   bool decompose();
   void solve_step();
   void correct_free();
-  bool descend(double tolerance);
+  bool descend();
   bool choose_free();
   void step_free();
   bool step_within_bounds();
-  int release(double tolerance, bool only_one);
+  int release(bool only_one);
   struct Change {  // of a row's status, on the path
     int row = -1;
     double way = 0;
     Status to = free;
   };
-  bool follow_path(double tolerance, int changes);
+  bool follow_path(int changes);
   void cover();
   void uncover(double part);
   bool lead();
@@ -91,9 +105,11 @@ class BoxSolver {
   bool take_change(const Change& change);
   void respond(std::vector<double>& to, int i, double change) const;
   void hold_friction(double part);
-  bool settle_friction(double tolerance);
-  void agree_at_last(double tolerance);
+  bool settle_friction();
+  void agree_at_last();
 
+  Effort& effort_;
+  double asked_ = 0;  // tolerance of a cheap step
   int stride_ = 0;
   std::vector<Row> rows_;
   std::vector<double> left_;

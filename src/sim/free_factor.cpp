@@ -41,6 +41,7 @@ bool FreeFactor::choose(std::span<const unsigned char> free, int most) {
 bool FreeFactor::factor(int kept) {
   const int n = static_cast<int>(rows_.size());
   const int width = (n + 1) / 2 * 2;
+  effort_.lines(0.5 * n * n, 0.5 * (n - kept));
   for (int i = 0; i < n; ++i) {
     const double* from = &matrix_[at(rows_[at(i)] * stride_)];
     double* to = &lines_[at(i * stride_)];
@@ -72,6 +73,7 @@ bool FreeFactor::factor(int kept) {
 void FreeFactor::solve(std::span<double> missing) const {
   const int n = static_cast<int>(rows_.size());
   double* x = missing.data();
+  effort_.lines(2 * n, 0.5 * n);
   for (int r = 1; r < n; ++r) x[r] -= product(&lines_[at(r * stride_)], x, r);
   for (int r = n; r-- > 0;) {
     const double* line = &lines_[at(r * stride_)];

@@ -6,11 +6,14 @@
 #include <span>
 #include <vector>
 
+#include "sim/effort.h"
+
 namespace limber {
 
 /// Golub and Van Loan, Matrix Computations, 4.1: without exchanges, since what it factors is positive. [sim]
 class FreeFactor {
  public:
+  explicit FreeFactor(Effort& effort) : effort_(effort) {}
   /// Of a symmetric matrix, `stride` (even) numbers a line, which stays as it is while rows are chosen. None are.
   void start(std::span<const double> matrix, int stride);
   /// The rows that are to be free (not 0), one mark each; those that were free keep their order, and others come behind
@@ -24,6 +27,7 @@ class FreeFactor {
   static std::size_t at(int i) { return static_cast<std::size_t>(i); }
   bool factor(int kept);
 
+  Effort& effort_;
   std::span<const double> matrix_;
   int stride_ = 0;
   std::vector<int> rows_;

@@ -85,13 +85,23 @@ int IslandDirect::give_up_broken() {
 
 // Trees by themselves, contacts as they are; then what stands around them, until no law is broken.
 bool IslandDirect::settle() {
+  const double before = effort_.spent();
+  const bool settled = settle_trees() && (outer_.empty() || settle_outer()) && finite();
+  settle_cost_ = effort_.spent() - before;
+  return settled;
+}
+
+bool IslandDirect::settle_trees() {
   for (const Tree& t : trees_) {
     if (!system_.settle(t.first, t.last, kExchanges)) return false;
     const bool again = !outer_.empty() && system_.give_up_remembered(t.first, t.last) > 0;
     if (again && !system_.refresh(t.first, t.last)) return false;
   }
   collect_axes();
-  if (outer_.empty()) return finite();
+  return true;
+}
+
+bool IslandDirect::settle_outer() {
   system_.keep();
   for (OuterRow& row : outer_) row.kept = row.impulse;
   take_contacts();
@@ -101,12 +111,15 @@ bool IslandDirect::settle() {
     do {
       if (!build_responses()) return false;
       pinned = give_up_pinned();
-      missed = pinned ? 0 : solve_outer();
+      missed = pinned ? 0 : solve_outer(Solve::anew);
     } while (!pinned && take_contacts() > 0);
     int broken = pinned ? 1 : give_up_broken();
     // too stiff to be solved: then every motor and limit that contacts feel gives way as far as its force says
     if ((!(missed < kOuterMiss) || round == kRounds - 2) && give_up_touched() > 0) broken++;
-    if (broken == 0) return std::isfinite(missed) && finite();
+    if (broken == 0) {
+      if (!box_.agrees()) missed = solve_outer(Solve::polish);
+      return std::isfinite(missed);
+    }
     // what was found with other rows in force must not stay
     system_.go_back();
     for (OuterRow& row : outer_) row.impulse = row.kept;
@@ -308,7 +321,8 @@ bool IslandDirect::bend_all(const IslandPools& pools, double h) {
   for (const Tree& t : trees_) unbent_work_.push_back(passive(t) ? work_of_locks(t, pools) : 0);
   bool solved = true;
   bool bending = true;
-  for (int pass = 0; pass < kBends && solved && bending; ++pass) {
+  const auto time_left = [this] { return !effort_.over(settle_cost_); };
+  for (int pass = 0; pass < kBends && solved && bending && time_left(); ++pass) {
     bending = bend_locks(pools, h);
     if (bending) solved = settle();
   }
@@ -324,6 +338,7 @@ bool IslandDirect::solve(IslandPools pools, const btContactSolverInfo& info) {
   }
   const double h = static_cast<double>(info.m_timeStep);
   before_calm_.clear();
+  effort_.begin();
   bool solved = build_forest(pools);
   if (solved && crowded(pools)) {
     counts_.plain++;
@@ -331,7 +346,10 @@ bool IslandDirect::solve(IslandPools pools, const btContactSolverInfo& info) {
   }
   if (solved && calm_whips(pools, h, Whips::before)) solved = build_forest(pools);
   if (solved) solved = settle_all(pools, h);
-  if (solved && calm_whips(pools, h, Whips::after)) solved = build_forest(pools) && settle_all(pools, h);
+  // with no time left they wait for the next step
+  if (solved && !effort_.over() && calm_whips(pools, h, Whips::after)) {
+    solved = build_forest(pools) && settle_all(pools, h);
+  }
   if (solved) solved = bend_all(pools, h);
   if (!solved || contradicts(system_, static_cast<int>(body_of_.size()), pools)) {
     counts_.fallbacks++;

@@ -10,6 +10,7 @@
 
 #include "sim/box_solver.h"
 #include "sim/bullet.h"
+#include "sim/effort.h"
 #include "sim/joint_constraint.h"
 #include "sim/tree_rows.h"
 
@@ -115,6 +116,7 @@ class IslandDirect {
   void add_contact(btSolverConstraint& row, int normal, double most);
   void collect_loops(const IslandPools& pools);
   void collect_axes();
+  void allow_work();
   double rate_of(const OuterRow& row) const;
   int tree_at(int node) const { return node < 0 ? -1 : tree_of_[static_cast<std::size_t>(node)]; }
   void load(const OuterRow& row, double impulse);
@@ -126,8 +128,11 @@ class IslandDirect {
   bool give_up_pinned();
   int give_up_touched();
   int give_up_broken();
-  double solve_outer();
+  enum class Solve : std::uint8_t { anew, polish };
+  double solve_outer(Solve how);
   bool settle();
+  bool settle_trees();
+  bool settle_outer();
   bool settle_all(IslandPools& pools, double h);
   bool bend_all(const IslandPools& pools, double h);
   enum class Whips : std::uint8_t { before, after };  // as the step began; as it was solved
@@ -168,9 +173,10 @@ class IslandDirect {
   /// A contact is pinned when it answers to less than this part of what its bodies alone would.
   static constexpr double kPinned = 1e-6;
 
-  TreeRows system_;
-  BoxSolver box_;
-  BoxSolver push_box_;
+  Effort effort_;
+  TreeRows system_{effort_};
+  BoxSolver box_{effort_};
+  BoxSolver push_box_{effort_};
   std::vector<Link> links_;
   std::vector<Tree> trees_;
   std::vector<int> tree_of_;  // node
@@ -193,8 +199,9 @@ class IslandDirect {
   std::size_t fixed_outer_ = 0;               // contacts and loops; behind them axes that were given up
   std::vector<double> unbent_work_;           // tree: of its locks, unbent, J
   std::uint64_t box_factors_ = 0;             // that box_ has the responses of
+  double settle_cost_ = 0;                    // of the last settle()
   bool gapes_ = false;                        // perhaps: bends do not fit yet, or do not know of so wide a turn
-  TreeRows poses_;                            // the trees where the step will end
+  TreeRows poses_{effort_};                   // the trees where the step will end
   std::vector<Pose> ends_;                    // node: there
   std::vector<std::array<double, 6>> goals_;  // link: where its locked axes are to be then
   bool measured_ = false;

@@ -9,6 +9,15 @@
 namespace limber {
 namespace {
 
+/// What a free axis costs on the way of an impulse to the root, in numbers.
+constexpr double kAxisNumbers = 24;
+/// Work that should do for a step: for any, for each body, and for what contacts have to do with each other; and times
+/// that while no motor gives way to them: then contacts are all that there is to solve for, and their exactness shows.
+constexpr double kEnough = 7e4;
+constexpr double kEnoughForBody = 2e3;
+constexpr double kEnoughForContacts = 1;
+constexpr double kEnoughWhileMotorsHold = 3;
+
 Spatial pull_of(const btVector3& linear, const btVector3& angular) { return {from_bt(linear), from_bt(angular)}; }
 
 BoxSolver::Status in_box(TreeRow::Status status) {
@@ -96,6 +105,13 @@ void IslandDirect::collect_axes() {
     out.likely = row.likely;
     outer_.push_back(out);
   }
+  allow_work();
+}
+
+void IslandDirect::allow_work() {
+  const auto rows = static_cast<double>(fixed_outer_);
+  const double enough = kEnough + kEnoughForBody * system_.trees.size() + kEnoughForContacts * rows * rows;
+  effort_.allow(outer_.size() > fixed_outer_ ? enough : kEnoughWhileMotorsHold * enough);
 }
 
 // Present rate, as a change from the start.
@@ -149,6 +165,9 @@ void IslandDirect::respond(BoxSolver& box, std::span<const int> rows) {
   felt_.clear();
   reaches_.resize(rows.size());
   for (std::size_t i = 0; i < rows.size(); ++i) feel(outer_[at(rows[i])], reaches_[i]);
+  const auto felt = static_cast<double>(felt_.size());
+  effort_.lines(felt, kAxisNumbers);
+  effort_.lines(0.5 * count * count, felt / (count + 1));
   const auto together = [this](const Reach& a, const Reach& b) {
     if (a.tree != b.tree || a.tree < 0) return 0.0;
     return product(felt_.data() + a.begin, felt_.data() + b.begin, std::min(a.count, b.count));
@@ -227,7 +246,7 @@ int IslandDirect::give_up_touched() {
 }
 
 // With the responses at hand: solves for all outer rows, and lets the trees follow. Returns what a row still misses.
-double IslandDirect::solve_outer() {
+double IslandDirect::solve_outer(Solve how) {
   for (int i = 0; i < box_.size(); ++i) {
     OuterRow& row = outer_[at(boxed_[at(i)])];
     row.begun = row.axis != nullptr ? row.axis->impulse : row.impulse;
@@ -242,7 +261,7 @@ double IslandDirect::solve_outer() {
         row.guess,
         row.likely - row.begun};
   }
-  const double missed = box_.solve(kOuterTolerance);
+  const double missed = how == Solve::anew ? box_.solve(kOuterTolerance) : box_.polish();
   for (int i = 0; i < box_.size(); ++i) {
     OuterRow& row = outer_[at(boxed_[at(i)])];
     row.impulse = box_.row(i).impulse;

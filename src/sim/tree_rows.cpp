@@ -78,6 +78,7 @@ bool TreeRows::factor(int first, int last) {
       }
     }
   }
+  effort_.lines(kNodeLines * (last - first), 6);
   factored_[at(first)] = 1;
   factors_++;
   return trees.factor(first, last);
@@ -131,6 +132,7 @@ void TreeRows::take_node(int i) {
 }
 
 void TreeRows::correct(int first, int last) {
+  effort_.lines(kNodeLines * (last - first), 6);
   for (int i = first; i < last; ++i) plan_node(i);
   trees.solve(first, last);
   for (int i = first; i < last; ++i) take_node(i);

@@ -6,6 +6,7 @@
 #include <span>
 #include <vector>
 
+#include "sim/effort.h"
 #include "sim/tree_solver.h"
 
 namespace limber {
@@ -40,6 +41,8 @@ using TreeMemory = std::array<std::uint8_t, 6>;
 /// [sim]
 class TreeRows {
  public:
+  explicit TreeRows(Effort& effort) : effort_(effort) {}
+
   TreeSolver trees;
 
   void clear();
@@ -122,6 +125,10 @@ class TreeRows {
   void take_node(int i);
   std::span<Stair> stairs(int first, int last);
 
+  /// What a factor, and what a solve costs, for each node: about so many lines of six.
+  static constexpr int kNodeLines = 28;
+
+  Effort& effort_;
   std::vector<TreeRow> rows_;
   std::vector<double> pending_;
   std::vector<int> row_start_;  // of each node

@@ -11,7 +11,7 @@
 namespace limber {
 namespace {
 
-// What the rows miss, calculated anew from the whole matrix.
+// What the rows miss, calculated anew from the whole matrix; a row beyond its bounds misses its law, too.
 double missed(BoxSolver& box, const std::vector<double>& left, const std::vector<double>& begun) {
   double most = 0;
   for (int i = 0; i < box.size(); ++i) {
@@ -27,8 +27,6 @@ double missed(BoxSolver& box, const std::vector<double>& left, const std::vector
       if (r.most > 0) upper = std::min(upper, r.most);
       lower = -upper;
     }
-    EXPECT_GE(r.impulse, lower - 1e-9) << i;
-    EXPECT_LE(r.impulse, upper + 1e-9) << i;
     const double own = box.response(i, i);
     most = std::max(most, std::fabs(std::clamp(r.impulse + rest / own, lower, upper) - r.impulse) * own);
   }
@@ -48,7 +46,8 @@ TEST(BoxSolver, MeetsEveryLawOfRandomProblems) {
       const double unit = std::pow(10, draw(-1, 1));
       for (double& x : line) x = unit * draw(-1, 1);
     }
-    BoxSolver box;
+    Effort effort;
+    BoxSolver box(effort);
     box.start(n);
     std::vector<double> left;
     std::vector<double> begun;
@@ -87,7 +86,8 @@ TEST(BoxSolver, MeetsEveryLawOfRandomProblems) {
 // friction's part of it: 3 m/s - 0.5·2/2 m/s are left, or nothing where friction can do more.
 TEST(BoxSolver, FrictionFollowsItsNormal) {
   for (const double friction : {0.5, 2.0}) {
-    BoxSolver box;
+    Effort effort;
+    BoxSolver box(effort);
     box.start(2);
     box.response(0, 0) = box.response(1, 1) = 0.5;
     box.row(0) = {1, 0, 0, 1e18, -1, 0, 0};
@@ -96,7 +96,8 @@ TEST(BoxSolver, FrictionFollowsItsNormal) {
     EXPECT_NEAR(box.row(0).impulse, 2, 1e-6);
     EXPECT_NEAR(box.row(1).impulse, -std::min(2 * friction, 6.0), 1e-6);
   }
-  BoxSolver box;
+  Effort effort;
+  BoxSolver box(effort);
   box.start(2);
   box.response(0, 0) = box.response(1, 1) = 0.5;
   box.row(0) = {1, 0, 0, 1e18, -1, 0, 0};
@@ -107,7 +108,8 @@ TEST(BoxSolver, FrictionFollowsItsNormal) {
 
 // Four points that bear one load: any share will do, the sum is the load's.
 TEST(BoxSolver, RowsThatDependOnEachOtherShare) {
-  BoxSolver box;
+  Effort effort;
+  BoxSolver box(effort);
   box.start(4);
   for (int i = 0; i < 4; ++i) {
     for (int k = 0; k < 4; ++k) box.response(i, k) = 0.25;
@@ -119,41 +121,84 @@ TEST(BoxSolver, RowsThatDependOnEachOtherShare) {
   EXPECT_NEAR(sum, 4, 1e-6);
 }
 
-// Eight contacts of a machine of six axes, rough: rounds of friction and normals by turns agree on nothing in one of
-// twenty, and yet each has a solution (Anitescu and Potra 1997).
-TEST(BoxSolver, FrictionAndNormalsAgreeInTheEnd) {
+// Eight contacts of a machine of six axes, rough; returns what is left of each row.
+std::vector<double> touch(BoxSolver& box, unsigned seed) {
   constexpr int kContacts = 8;
   constexpr int kAxes = 6;
+  std::mt19937 generator(seed);
+  const auto draw = [&] { return static_cast<double>(generator()) / 2147483648.0 - 1; };
+  double jacobian[3 * kContacts][kAxes];
+  double rates[kAxes];
+  for (auto& row : jacobian) {
+    for (double& x : row) x = draw();
+  }
+  for (double& x : rates) x = draw();
+  box.start(3 * kContacts);
+  std::vector<double> left;
+  for (int i = 0; i < box.size(); ++i) {
+    for (int k = 0; k < box.size(); ++k) {
+      box.response(i, k) = i == k ? 1e-3 : 0;
+      for (int m = 0; m < kAxes; ++m) box.response(i, k) += jacobian[i][m] * jacobian[k][m];
+    }
+    BoxSolver::Row& r = box.row(i);
+    for (int m = 0; m < kAxes; ++m) r.left -= jacobian[i][m] * rates[m];
+    left.push_back(r.left);
+    if (i < kContacts) {
+      r.upper = 1e18;
+    } else {
+      r.normal = i % kContacts;
+      r.friction = 2;
+    }
+  }
+  return left;
+}
+
+// Rounds of friction and normals by turns agree on nothing in one of twenty, and yet each has a solution (Anitescu and
+// Potra 1997).
+TEST(BoxSolver, FrictionAndNormalsAgreeInTheEnd) {
   for (unsigned seed = 1; seed <= 200; ++seed) {
-    std::mt19937 generator(seed);
-    const auto draw = [&] { return static_cast<double>(generator()) / 2147483648.0 - 1; };
-    double jacobian[3 * kContacts][kAxes];
-    double rates[kAxes];
-    for (auto& row : jacobian) {
-      for (double& x : row) x = draw();
-    }
-    for (double& x : rates) x = draw();
-    BoxSolver box;
-    box.start(3 * kContacts);
-    std::vector<double> left;
-    for (int i = 0; i < box.size(); ++i) {
-      for (int k = 0; k < box.size(); ++k) {
-        box.response(i, k) = i == k ? 1e-3 : 0;
-        for (int m = 0; m < kAxes; ++m) box.response(i, k) += jacobian[i][m] * jacobian[k][m];
-      }
-      BoxSolver::Row& r = box.row(i);
-      for (int m = 0; m < kAxes; ++m) r.left -= jacobian[i][m] * rates[m];
-      left.push_back(r.left);
-      if (i < kContacts) {
-        r.upper = 1e18;
-      } else {
-        r.normal = i % kContacts;
-        r.friction = 2;
-      }
-    }
+    Effort effort;
+    BoxSolver box(effort);
+    const std::vector<double> left = touch(box, seed);
     EXPECT_LE(box.solve(1e-7), 1e-7) << seed;
+    EXPECT_TRUE(box.agrees()) << seed;
     EXPECT_LT(missed(box, left, std::vector<double>(left.size(), 0)), 1e-6) << seed;
   }
+}
+
+// With no time left a row may miss its law by a hundredth; where friction and normals do not agree even so, they come
+// nearer to each other.
+TEST(BoxSolver, WithNoTimeLeftLawsAreNearlyMet) {
+  int apart = 0;
+  int met = 0;
+  for (unsigned seed = 1; seed <= 200; ++seed) {
+    Effort effort;
+    BoxSolver box(effort);
+    const std::vector<double> left = touch(box, seed);
+    const std::vector<double> begun(left.size(), 0);
+    effort.allow(0);
+    effort.lines(1, 1);
+    const double told = box.solve(1e-7);
+    double now = missed(box, left, begun);
+    if (box.agrees()) {
+      EXPECT_NEAR(told, now, 1e-6) << seed;
+    } else {
+      apart++;
+      for (int i = 0; i < box.size(); ++i) {
+        double rest = left[static_cast<std::size_t>(i)];
+        for (int k = 0; k < box.size(); ++k) rest -= box.response(i, k) * box.row(k).impulse;
+        box.row(i).left = rest;
+      }
+      const double before = now;
+      const double polished = box.polish();
+      now = missed(box, left, begun);
+      EXPECT_NEAR(polished, now, 1e-6) << seed;
+      EXPECT_LE(now, before) << seed;
+    }
+    if (now <= 1e-2 * (1 + 1e-6)) met++;
+  }
+  EXPECT_GE(apart, 20);
+  EXPECT_GE(met, 170);
 }
 
 }  // namespace

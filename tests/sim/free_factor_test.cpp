@@ -37,7 +37,8 @@ TEST(FreeFactor, SolvesForWhateverRowsAreChosen) {
   constexpr int kHollow = 7;
   std::mt19937 generator(3);
   const std::vector<double> matrix = positive_matrix(kRows, kStride, generator, kHollow);
-  FreeFactor factor;
+  Effort effort;
+  FreeFactor factor(effort);
   factor.start(matrix, kStride);
   std::vector<unsigned char> free(kRows, 0);
   int refused = 0;
@@ -68,7 +69,8 @@ TEST(FreeFactor, SolvesForWhateverRowsAreChosen) {
 
 TEST(FreeFactor, ChoosesNoMoreThanItMay) {
   const std::vector<double> matrix{2, 1, 1, 2};
-  FreeFactor factor;
+  Effort effort;
+  FreeFactor factor(effort);
   factor.start(matrix, 2);
   EXPECT_FALSE(factor.choose(std::vector<unsigned char>{1, 1}, 1));
   ASSERT_TRUE(factor.choose(std::vector<unsigned char>{0, 1}, 1));

@@ -29,7 +29,8 @@ struct Hinge {
     rows.correct(0, 1);
   }
   const TreeRow& motor() { return rows.rows().back(); }
-  TreeRows rows;
+  Effort effort;
+  TreeRows rows{effort};
 };
 
 // The motor reaches its speed, until something turns against it with more than it has. Then it is given up, and the
