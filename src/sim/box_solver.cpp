@@ -31,6 +31,30 @@ void BoxSolver::start(int rows) {
   left_.assign(nth(stride_), 0);
 }
 
+void BoxSolver::grow(std::span<const int> from) {
+  old_response_.swap(response_);
+  const int old_stride = stride_;
+  start(static_cast<int>(from.size()));
+  for (int i = 0; i < size(); ++i) {
+    if (from[nth(i)] < 0) continue;
+    const double* line = &old_response_[nth(from[nth(i)] * old_stride)];
+    for (int k = 0; k < size(); ++k) {
+      if (from[nth(k)] >= 0) response(i, k) = line[from[nth(k)]];
+    }
+  }
+}
+
+void BoxSolver::add_squares(std::span<const double> lines, int width) {
+  for (int i = 0; i < size(); ++i) {
+    changed_.clear();
+    for (std::size_t first = 0; first < lines.size(); first += nth(width)) {
+      changed_.push_back({&lines[first], -lines[first + nth(i)]});
+    }
+    subtract_scaled(&response(i, 0), changed_, stride_);
+  }
+  changed_.clear();
+}
+
 void BoxSolver::bound(Row& row) const {
   if (row.normal < 0 || frozen_) return;
   double reach = row.friction * std::max(rows_[nth(row.normal)].impulse, 0.0);

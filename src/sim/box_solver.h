@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstddef>
+#include <span>
 #include <vector>
 
 #include "sim/dense.h"
@@ -31,6 +32,11 @@ class BoxSolver {
   explicit BoxSolver(Effort& effort) : effort_(effort), steady_(effort) {}
   /// Rows and a response of zeros.
   void start(int rows);
+  /// As many rows as `from` has, each where that says that it was (-1: new); responses between rows that were are kept,
+  /// others are 0.
+  void grow(std::span<const int> from);
+  /// Adds the square of each line to the responses; lines have a number for each row at least, `width` (even) in all.
+  void add_squares(std::span<const double> lines, int width);
   int size() const { return static_cast<int>(rows_.size()); }
   Row& row(int i) { return rows_[static_cast<std::size_t>(i)]; }
   /// Response of row i to a unit impulse of row j; symmetric, to be set for both orders. Softness stands on the
@@ -114,6 +120,7 @@ class BoxSolver {
   std::vector<Row> rows_;
   std::vector<double> left_;
   std::vector<double> response_;
+  std::vector<double> old_response_;
   std::vector<double> eases_;  // one through a row's own response
   std::vector<ScaledLine> changed_;
   std::vector<double> start_;   // impulses

@@ -306,6 +306,8 @@ bool IslandDirect::finite() const {
 bool IslandDirect::settle_all(IslandPools& pools, double h) {
   outer_.clear();
   box_factors_ = 0;
+  known_names_.clear();
+  known_axes_.clear();
   collect_contacts(pools);
   collect_loops(pools);
   fixed_outer_ = outer_.size();

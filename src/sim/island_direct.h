@@ -76,6 +76,14 @@ class IslandDirect {
     int node = -1;
     Spatial pull;
   };
+  struct Pull {  // what an impulse acts on: two bodies, or an axis of the first
+    Side a, b;
+    int axis = -1;
+  };
+  struct KnownAxes {
+    unsigned held;
+    std::array<double, 6> conductance;
+  };
   struct Reach {  // what an outer row lets a tree feel
     int tree = -1;
     int begin = 0;  // in felt_
@@ -122,9 +130,13 @@ class IslandDirect {
   void load(const OuterRow& row, double impulse);
   void feel(const OuterRow& row, std::array<Reach, 2>& reaches);
   int take_contacts();
-  bool gather_rows();
+  void gather_rows();
+  int name_of(int outer) const;
   void respond(BoxSolver& box, std::span<const int> rows);
   bool build_responses();
+  bool extend_responses();
+  static Pull pull_on(const OuterRow& row);
+  void answer(const Pull& to, std::span<double> rates);
   bool give_up_pinned();
   int give_up_touched();
   int give_up_broken();
@@ -195,10 +207,17 @@ class IslandDirect {
   std::vector<double> impulses_;
   std::vector<int> push_rows_;
   std::vector<std::pair<btVector3, btVector3>>
-      before_calm_;                           // body: changes that contacts began with; empty: not calmed
-  std::size_t fixed_outer_ = 0;               // contacts and loops; behind them axes that were given up
-  std::vector<double> unbent_work_;           // tree: of its locks, unbent, J
-  std::uint64_t box_factors_ = 0;             // that box_ has the responses of
+      before_calm_;                    // body: changes that contacts began with; empty: not calmed
+  std::size_t fixed_outer_ = 0;        // contacts and loops; behind them axes that were given up
+  std::vector<double> unbent_work_;    // tree: of its locks, unbent, J
+  std::uint64_t box_factors_ = 0;      // that box_ has the responses of
+  std::vector<int> names_;             // of boxed_
+  std::vector<int> known_names_;       // of the rows that box_ has the responses of
+  std::vector<KnownAxes> known_axes_;  // node: as it was then
+  std::vector<Pull> released_;         // axes that were, and are no more
+  std::vector<int> from_;              // row of a box: where it was
+  std::vector<double> lines_;
+  std::vector<double> answers_;
   double settle_cost_ = 0;                    // of the last settle()
   bool gapes_ = false;                        // perhaps: bends do not fit yet, or do not know of so wide a turn
   TreeRows poses_{effort_};                   // the trees where the step will end

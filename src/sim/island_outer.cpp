@@ -3,20 +3,17 @@
 #include <algorithm>
 #include <cmath>
 
-#include "sim/dense.h"
 #include "sim/island_direct.h"
 
 namespace limber {
 namespace {
 
-/// What a free axis costs on the way of an impulse to the root, in numbers.
-constexpr double kAxisNumbers = 24;
 /// Work that should do for a step: for any, for each body, and for what contacts have to do with each other; and times
 /// that while no motor gives way to them: then contacts are all that there is to solve for, and their exactness shows.
-constexpr double kEnough = 7e4;
+constexpr double kEnough = 5e4;
 constexpr double kEnoughForBody = 2e3;
 constexpr double kEnoughForContacts = 1;
-constexpr double kEnoughWhileMotorsHold = 3;
+constexpr double kEnoughWhileMotorsHold = 4;
 
 Spatial pull_of(const btVector3& linear, const btVector3& angular) { return {from_bt(linear), from_bt(angular)}; }
 
@@ -133,56 +130,6 @@ void IslandDirect::load(const OuterRow& row, double impulse) {
   }
 }
 
-// What an impulse of the row lets the free axes of its trees feel, behind all that is in felt_.
-void IslandDirect::feel(const OuterRow& row, std::array<Reach, 2>& reaches) {
-  const auto open = [&](int tree, int count) {
-    const Reach reach{tree, static_cast<int>(felt_.size()), count};
-    felt_.resize(felt_.size() + at(reach.count), 0);
-    return reach;
-  };
-  const auto axes = [&](const Side& side) { return side.node < 0 ? 0 : system_.trees.free_axes(side.node); };
-  const auto take = [&](const Reach& reach, const TreeLoad& a, const TreeLoad& b) {
-    system_.trees.feel(a, b, std::span(felt_).subspan(at(reach.begin), at(reach.count)));
-  };
-  const TreeLoad a{row.a.node, row.a.pull};
-  const TreeLoad b{row.b.node, row.b.pull};
-  const int tree_a = tree_at(a.node);
-  const int tree_b = tree_at(b.node);
-  double* ask = row.axis != nullptr ? &system_.trees.node(a.node).ask[row.axis->axis] : nullptr;
-  if (ask != nullptr) *ask = 1;
-  reaches[0] = open(tree_a, std::max(axes(row.a), tree_b == tree_a ? axes(row.b) : 0));
-  take(reaches[0], a, tree_b == tree_a ? b : TreeLoad{});
-  if (ask != nullptr) *ask = 0;
-  reaches[1] = open(tree_b == tree_a ? -1 : tree_b, tree_b == tree_a ? 0 : axes(row.b));
-  if (tree_b != tree_a) take(reaches[1], b, {});
-}
-
-// The trees' response between these outer rows.
-void IslandDirect::respond(BoxSolver& box, std::span<const int> rows) {
-  const int count = static_cast<int>(rows.size());
-  box.start(count);
-  for (int i = 0; i < system_.trees.size(); ++i) system_.trees.node(i).ask.fill(0);
-  felt_.clear();
-  reaches_.resize(rows.size());
-  for (std::size_t i = 0; i < rows.size(); ++i) feel(outer_[at(rows[i])], reaches_[i]);
-  const auto felt = static_cast<double>(felt_.size());
-  effort_.lines(felt, kAxisNumbers);
-  effort_.lines(0.5 * count * count, felt / (count + 1));
-  const auto together = [this](const Reach& a, const Reach& b) {
-    if (a.tree != b.tree || a.tree < 0) return 0.0;
-    return product(felt_.data() + a.begin, felt_.data() + b.begin, std::min(a.count, b.count));
-  };
-  for (int i = 0; i < count; ++i) {
-    const auto& [first, second] = reaches_[at(i)];
-    for (int k = i; k < count; ++k) {
-      const auto& [other, another] = reaches_[at(k)];
-      double response = together(first, other) + together(first, another);
-      if (second.tree >= 0) response += together(second, other) + together(second, another);
-      box.response(i, k) = box.response(k, i) = response;
-    }
-  }
-}
-
 // Contacts that stand aside and would be passed through now come back, with their friction; how many rows these were.
 int IslandDirect::take_contacts() {
   int taken = 0;
@@ -193,32 +140,6 @@ int IslandDirect::take_contacts() {
     taken += row.aside ? 0 : 1;
   }
   return taken;
-}
-
-// False: they are the same ones as before.
-bool IslandDirect::gather_rows() {
-  const std::size_t boxed = boxed_.size();
-  const std::size_t all = place_.size();
-  place_.resize(outer_.size());
-  boxed_.clear();
-  for (std::size_t i = 0; i < outer_.size(); ++i) {
-    place_[i] = outer_[i].aside ? -1 : static_cast<int>(boxed_.size());
-    if (!outer_[i].aside) boxed_.push_back(static_cast<int>(i));
-  }
-  return place_.size() != all || boxed_.size() != boxed;
-}
-
-// False: not a number.
-bool IslandDirect::build_responses() {
-  const bool other_rows = gather_rows();
-  if (box_factors_ == system_.factors() && !other_rows) return true;
-  box_factors_ = system_.factors();
-  respond(box_, boxed_);
-  for (int i = 0; i < box_.size(); ++i) {
-    box_.response(i, i) += outer_[at(boxed_[at(i)])].softness;
-    if (!std::isfinite(box_.response(i, i))) return false;
-  }
-  return true;
 }
 
 // Contacts of a body whose every motion motors prescribe: no impulse answers, motors must.

@@ -53,6 +53,7 @@ class TreeRows {
   TreeMemory memory(int node) const;
 
   std::span<TreeRow> rows(int node);
+  int index_of(const TreeRow& row) const { return static_cast<int>(&row - rows_.data()); }
   std::span<const TreeRow> rows(int node) const {
     const auto first = at(row_start_[at(node)]);
     return std::span(rows_).subspan(first, at(row_start_[at(node) + 1]) - first);

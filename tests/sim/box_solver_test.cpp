@@ -201,5 +201,29 @@ TEST(BoxSolver, WithNoTimeLeftLawsAreNearlyMet) {
   EXPECT_GE(met, 170);
 }
 
+// Three rows of five were there: between them responses stay, and the squares of two lines come on top of all.
+TEST(BoxSolver, GrowsByRowsAndSquares) {
+  Effort effort;
+  BoxSolver box(effort);
+  box.start(3);
+  for (int i = 0; i < 3; ++i) {
+    for (int k = 0; k < 3; ++k) box.response(i, k) = 10 * (i + 1) * (k + 1);
+  }
+  const std::vector<int> from{0, -1, 1, -1, 2};
+  box.grow(from);
+  ASSERT_EQ(box.size(), 5);
+  // as wide as three pairs, and what is behind the rows is another's
+  const std::vector<double> lines{1, 2, 3, 4, 5, 0, 7, 8, 2, -1, 0, 3, 1, 0, 9, 9};
+  box.add_squares(lines, 8);
+  for (int i = 0; i < 5; ++i) {
+    for (int k = 0; k < 5; ++k) {
+      const auto n = [](int row) { return static_cast<std::size_t>(row); };
+      const bool were = from[n(i)] >= 0 && from[n(k)] >= 0;
+      const double before = were ? 10.0 * (from[n(i)] + 1) * (from[n(k)] + 1) : 0;
+      EXPECT_EQ(box.response(i, k), before + lines[n(i)] * lines[n(k)] + lines[n(8 + i)] * lines[n(8 + k)]) << i << k;
+    }
+  }
+}
+
 }  // namespace
 }  // namespace limber

@@ -1,0 +1,202 @@
+// How the rows around the trees answer to each other's impulses: by halves of responses, or, where a few axes have been
+// given up since, from what the answers were before.
+#include <algorithm>
+#include <cmath>
+
+#include "sim/dense.h"
+#include "sim/island_direct.h"
+
+namespace limber {
+namespace {
+
+/// What a free axis costs on the way of an impulse to the root, in numbers.
+constexpr double kAxisNumbers = 24;
+/// For so many rows that were known one new column is worth it.
+constexpr int kRowsForColumn = 6;
+/// An axis that, with those before it held still, keeps less than this part of its rate is left to the whole way.
+constexpr double kLeastRate = 1e-6;
+
+}  // namespace
+
+// What an impulse of the row lets the free axes of its trees feel, behind all that is in felt_.
+void IslandDirect::feel(const OuterRow& row, std::array<Reach, 2>& reaches) {
+  const auto open = [&](int tree, int count) {
+    const Reach reach{tree, static_cast<int>(felt_.size()), count};
+    felt_.resize(felt_.size() + at(reach.count), 0);
+    return reach;
+  };
+  const auto axes = [&](const Side& side) { return side.node < 0 ? 0 : system_.trees.free_axes(side.node); };
+  const auto take = [&](const Reach& reach, const TreeLoad& a, const TreeLoad& b) {
+    system_.trees.feel(a, b, std::span(felt_).subspan(at(reach.begin), at(reach.count)));
+  };
+  const TreeLoad a{row.a.node, row.a.pull};
+  const TreeLoad b{row.b.node, row.b.pull};
+  const int tree_a = tree_at(a.node);
+  const int tree_b = tree_at(b.node);
+  double* ask = row.axis != nullptr ? &system_.trees.node(a.node).ask[row.axis->axis] : nullptr;
+  if (ask != nullptr) *ask = 1;
+  reaches[0] = open(tree_a, std::max(axes(row.a), tree_b == tree_a ? axes(row.b) : 0));
+  take(reaches[0], a, tree_b == tree_a ? b : TreeLoad{});
+  if (ask != nullptr) *ask = 0;
+  reaches[1] = open(tree_b == tree_a ? -1 : tree_b, tree_b == tree_a ? 0 : axes(row.b));
+  if (tree_b != tree_a) take(reaches[1], b, {});
+}
+
+// The trees' response between these outer rows.
+void IslandDirect::respond(BoxSolver& box, std::span<const int> rows) {
+  const int count = static_cast<int>(rows.size());
+  box.start(count);
+  for (int i = 0; i < system_.trees.size(); ++i) system_.trees.node(i).ask.fill(0);
+  felt_.clear();
+  reaches_.resize(rows.size());
+  for (std::size_t i = 0; i < rows.size(); ++i) feel(outer_[at(rows[i])], reaches_[i]);
+  const auto felt = static_cast<double>(felt_.size());
+  effort_.lines(felt, kAxisNumbers);
+  effort_.lines(0.5 * count * count, felt / (count + 1));
+  const auto together = [this](const Reach& a, const Reach& b) {
+    if (a.tree != b.tree || a.tree < 0) return 0.0;
+    return product(felt_.data() + a.begin, felt_.data() + b.begin, std::min(a.count, b.count));
+  };
+  for (int i = 0; i < count; ++i) {
+    const auto& [first, second] = reaches_[at(i)];
+    for (int k = i; k < count; ++k) {
+      const auto& [other, another] = reaches_[at(k)];
+      double response = together(first, other) + together(first, another);
+      if (second.tree >= 0) response += together(second, other) + together(second, another);
+      box.response(i, k) = box.response(k, i) = response;
+    }
+  }
+}
+
+// Those that are solved for, in the order of outer_.
+void IslandDirect::gather_rows() {
+  place_.resize(outer_.size());
+  boxed_.clear();
+  for (std::size_t i = 0; i < outer_.size(); ++i) {
+    place_[i] = outer_[i].aside ? -1 : static_cast<int>(boxed_.size());
+    if (!outer_[i].aside) boxed_.push_back(static_cast<int>(i));
+  }
+}
+
+// The same for a row in every round of a step, and growing as boxed_ does.
+int IslandDirect::name_of(int outer) const {
+  const TreeRow* axis = outer_[at(outer)].axis;
+  return axis == nullptr ? outer : static_cast<int>(fixed_outer_) + system_.index_of(*axis);
+}
+
+// False: not a number.
+bool IslandDirect::build_responses() {
+  gather_rows();
+  names_.clear();
+  for (const int i : boxed_) names_.push_back(name_of(i));
+  if (box_factors_ == system_.factors() && names_ == known_names_) return true;
+  if (!extend_responses()) {
+    respond(box_, boxed_);
+    for (int i = 0; i < box_.size(); ++i) box_.response(i, i) += outer_[at(boxed_[at(i)])].softness;
+  }
+  box_factors_ = system_.factors();
+  known_names_ = names_;
+  known_axes_.clear();
+  for (int i = 0; i < system_.trees.size(); ++i) {
+    known_axes_.push_back({system_.trees.node(i).held, system_.trees.node(i).conductance});
+  }
+  for (int i = 0; i < box_.size(); ++i) {
+    if (!std::isfinite(box_.response(i, i))) return false;
+  }
+  return true;
+}
+
+// Where axes have been given up since, or rows came, and not many. An axis that lets go adds to the response between
+// two rows the product of the rates that a unit impulse about it gives them, over the rate that it gives the axis
+// itself.
+bool IslandDirect::extend_responses() {
+  if (known_axes_.size() != at(system_.trees.size())) return false;
+  if (!std::includes(names_.begin(), names_.end(), known_names_.begin(), known_names_.end())) return false;
+  released_.clear();
+  for (int i = 0; i < system_.trees.size(); ++i) {
+    const TreeNode& node = system_.trees.node(i);
+    const KnownAxes& before = known_axes_[at(i)];
+    if ((node.held & ~before.held) != 0 || node.conductance != before.conductance) return false;
+    for (int k = 0; k < 6; ++k) {
+      if (((before.held & ~node.held) >> k & 1U) != 0) released_.push_back({{i, {}}, {}, k});
+    }
+  }
+  const auto known = static_cast<int>(known_names_.size());
+  const int count = static_cast<int>(boxed_.size());
+  const int freed = static_cast<int>(released_.size());
+  if ((freed + count - known) * kRowsForColumn > known) return false;
+  for (int i = 0; i < system_.trees.size(); ++i) system_.trees.node(i).ask.fill(0);
+
+  // a line for each axis that lets go, as if those before it were held still: what it adds is the square of the line
+  const int axes = (count + 1) / 2 * 2;  // behind the rows
+  const int width = axes + (freed + 1) / 2 * 2;
+  lines_.assign(at(freed * width), 0);
+  for (int n = 0; n < freed; ++n) {
+    double* line = &lines_[at(n * width)];
+    answer(released_[at(n)], std::span(line, at(width)));
+    const double alone = line[axes + n];
+    for (int m = 0; m < n; ++m) {
+      const double* before = &lines_[at(m * width)];
+      subtract_scaled(line, before, before[axes + n], width);
+    }
+    if (!(line[axes + n] > kLeastRate * alone)) return false;
+    const double scale = 1 / std::sqrt(line[axes + n]);
+    for (int i = 0; i < width; ++i) line[i] *= scale;
+  }
+  from_.clear();
+  for (int i = 0, next = 0; i < count; ++i) {
+    const bool was = next < known && known_names_[at(next)] == names_[at(i)];
+    from_.push_back(was ? next++ : -1);
+  }
+  box_.grow(from_);
+  box_.add_squares(lines_, width);
+  answers_.resize(at(width));
+  for (int i = 0; i < count; ++i) {
+    if (from_[at(i)] >= 0) continue;
+    const OuterRow& row = outer_[at(boxed_[at(i)])];
+    answer(pull_on(row), answers_);
+    for (int k = 0; k < count; ++k) box_.response(i, k) = box_.response(k, i) = answers_[at(k)];
+    box_.response(i, i) += row.softness;
+  }
+  effort_.lines((freed + count - known) * (system_.trees.size() + count), kAxisNumbers);
+  effort_.lines(count * (1 + freed), count);
+  return true;
+}
+
+IslandDirect::Pull IslandDirect::pull_on(const OuterRow& row) {
+  return {row.a, row.b, row.axis != nullptr ? static_cast<int>(row.axis->axis) : -1};
+}
+
+// Rates that a unit impulse gives the rows that are solved for, and the axes that let go.
+void IslandDirect::answer(const Pull& to, std::span<double> rates) {
+  TreeSolver& trees = system_.trees;
+  const int first = tree_at(to.a.node);
+  const int second = tree_at(to.b.node);
+  if (to.axis >= 0) trees.node(to.a.node).ask[at(to.axis)] = 1;
+  for (const Side* side : {&to.a, &to.b}) {
+    if (to.axis < 0 && side->node >= 0) trees.node(side->node).load += side->pull;
+  }
+  for (const int tree : {first, second == first ? -1 : second}) {
+    if (tree >= 0) trees.respond(trees_[at(tree)].first, trees_[at(tree)].last);
+  }
+  if (to.axis >= 0) trees.node(to.a.node).ask[at(to.axis)] = 0;
+  for (const Side* side : {&to.a, &to.b}) {
+    if (side->node >= 0) trees.node(side->node).load = {};
+  }
+  const auto rate = [&](const Pull& of) {
+    double sum = 0;
+    for (const Side* side : {&of.a, &of.b}) {
+      const int tree = tree_at(side->node);
+      if (tree < 0 || (tree != first && tree != second)) continue;
+      const TreeNode& n = trees.node(side->node);
+      if (of.axis < 0) sum += dot(side->pull, n.change);
+      if (of.axis >= 0 && (n.held >> of.axis & 1U) == 0) sum += n.rate[at(of.axis)];
+    }
+    return sum;
+  };
+  for (std::size_t i = 0; i < boxed_.size(); ++i) rates[i] = rate(pull_on(outer_[at(boxed_[i])]));
+  const std::size_t axes = (boxed_.size() + 1) / 2 * 2;
+  for (std::size_t n = 0; n < released_.size(); ++n) rates[axes + n] = rate(released_[n]);
+}
+
+}  // namespace limber
