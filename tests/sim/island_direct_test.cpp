@@ -127,6 +127,20 @@ TEST(IslandDirect, APassiveChainDoesNotGainEnergy) {
   EXPECT_LT(highest - begun, 0.005 * swing);
 }
 
+// Motors that let go of a lying arm several at a time, so that the responses between its contacts change step by step:
+// no contact misses its law by much more than what is near may.
+TEST(IslandDirect, WhereManyMotorsGiveWayContactsStillHold) {
+  for (const double force : {1.0, 2.0, 5.0, 50.0}) {
+    RawScene s = raw_arm(17, 1, force, 0.6, true);
+    s.measure = true;
+    const auto player = RawPlayer::make(s, RawSolver::direct);
+    const RawFigures f = play(*player, 360);
+    EXPECT_LT(player->direct().contact, 0.2) << force;
+    EXPECT_LT(f.gap, 0.02) << force;
+    EXPECT_EQ(player->direct().fallbacks, 0) << force;
+  }
+}
+
 // Four legs of three joints each: they stand, every contact obeys its law.
 TEST(IslandDirect, AHeavyTrunkStandsOnLightFeet) {
   const double masses[][2] = {{10, 0.5}, {50, 1}, {50, 0.1}};
