@@ -36,7 +36,7 @@ bool BoxSolver::descend() {
   }
   recenter();
   least_missed_ = missed();
-  return effort_.over();
+  return effort_.over();  // then that has to do
 }
 
 bool BoxSolver::choose_free() {

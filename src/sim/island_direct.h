@@ -136,7 +136,7 @@ class IslandDirect {
   bool build_responses();
   bool extend_responses();
   static Pull pull_on(const OuterRow& row);
-  void answer(const Pull& to, std::span<double> rates);
+  void answer(const Pull& to, std::span<double> rows, std::span<double> axes);
   bool give_up_pinned();
   int give_up_touched();
   int give_up_broken();

@@ -133,7 +133,7 @@ bool IslandDirect::extend_responses() {
   lines_.assign(at(freed * width), 0);
   for (int n = 0; n < freed; ++n) {
     double* line = &lines_[at(n * width)];
-    answer(released_[at(n)], std::span(line, at(width)));
+    answer(released_[at(n)], std::span(line, at(count)), std::span(line + axes, at(freed)));
     const double alone = line[axes + n];
     for (int m = 0; m < n; ++m) {
       const double* before = &lines_[at(m * width)];
@@ -150,11 +150,11 @@ bool IslandDirect::extend_responses() {
   }
   box_.grow(from_);
   box_.add_squares(lines_, width);
-  answers_.resize(at(width));
+  answers_.resize(at(count));
   for (int i = 0; i < count; ++i) {
     if (from_[at(i)] >= 0) continue;
     const OuterRow& row = outer_[at(boxed_[at(i)])];
-    answer(pull_on(row), answers_);
+    answer(pull_on(row), answers_, {});
     for (int k = 0; k < count; ++k) box_.response(i, k) = box_.response(k, i) = answers_[at(k)];
     box_.response(i, i) += row.softness;
   }
@@ -167,8 +167,8 @@ IslandDirect::Pull IslandDirect::pull_on(const OuterRow& row) {
   return {row.a, row.b, row.axis != nullptr ? static_cast<int>(row.axis->axis) : -1};
 }
 
-// Rates that a unit impulse gives the rows that are solved for, and the axes that let go.
-void IslandDirect::answer(const Pull& to, std::span<double> rates) {
+// Rates that a unit impulse gives the rows that are solved for, and the first of the axes that let go.
+void IslandDirect::answer(const Pull& to, std::span<double> rows, std::span<double> axes) {
   TreeSolver& trees = system_.trees;
   const int first = tree_at(to.a.node);
   const int second = tree_at(to.b.node);
@@ -194,9 +194,8 @@ void IslandDirect::answer(const Pull& to, std::span<double> rates) {
     }
     return sum;
   };
-  for (std::size_t i = 0; i < boxed_.size(); ++i) rates[i] = rate(pull_on(outer_[at(boxed_[i])]));
-  const std::size_t axes = (boxed_.size() + 1) / 2 * 2;
-  for (std::size_t n = 0; n < released_.size(); ++n) rates[axes + n] = rate(released_[n]);
+  for (std::size_t i = 0; i < rows.size(); ++i) rows[i] = rate(pull_on(outer_[at(boxed_[i])]));
+  for (std::size_t n = 0; n < axes.size(); ++n) axes[n] = rate(released_[n]);
 }
 
 }  // namespace limber

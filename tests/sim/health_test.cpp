@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <utility>
 #include <vector>
 
 #include "sim/arm.h"
@@ -202,7 +203,7 @@ TEST(Health, BodiesDeepInEachOtherComeApart) {
     for (std::vector<double>* of_all : {&farthest, &highest}) std::sort(of_all->begin(), of_all->end());
     EXPECT_LT(farthest[4], 60) << "balls may roll away at 15 m/s, not fly, solver " << solver;
     EXPECT_LT(highest[4], 2) << solver;
-    EXPECT_LT(highest[8], 60) << solver;
+    EXPECT_LT(highest[8], solver > 0 ? 60 : 2) << solver;
   }
 }
 
