@@ -114,7 +114,8 @@ TEST(SceneKey, AnyMomentWillDo) {
 
 TEST(SceneKey, WhatIsStoppedIsStoppedAfterwardsToo) {
   SceneOptions options;
-  options.limits.call_ms = 5 * kBudgetScale;
+  options.limits.call_ms = 20 * kBudgetScale;
+  options.limits.memory = std::size_t{12} << 20u;  // few enough that memory is out long before the time is
   Stage stage(options, true);
   ASSERT_EQ(stage.play(R"(
 local kept, at = {}, {}
@@ -123,7 +124,7 @@ local function due(name, when)
   return at[name] == when
 end
 sim:on_step(function() if due("long", 5) then while true do end end end)
-sim:on_step(function() if due("much", 7) then while true do kept[#kept + 1] = ("x"):rep(1000) .. #kept end end end)
+sim:on_step(function() if due("much", 7) then while true do kept[#kept + 1] = ("x"):rep(1e6) .. #kept end end end)
 sim:on_step(function() if due("wrong", 9) then error("nine") end end)
 )",
                        2),
@@ -134,11 +135,14 @@ sim:on_step(function() if due("wrong", 9) then error("nine") end end)
     stage.host.faults.clear();
     stage.tick(12);
     std::vector<std::string> texts;
-    for (const auto& fault : stage.host.faults) texts.push_back(fault.text.substr(0, 30));
+    for (const auto& fault : stage.host.faults) texts.push_back(fault.text.substr(0, 48));
     return texts;
   };
   const std::vector<std::string> first = faults();
   ASSERT_EQ(first.size(), 3u);
+  EXPECT_NE(first[0].find("stopped after"), std::string::npos) << first[0];
+  EXPECT_NE(first[1].find("may hold"), std::string::npos) << first[1];
+  EXPECT_NE(first[2].find("nine"), std::string::npos) << first[2];
   for (int round = 0; round < 3; round++) {
     kept.bring_back(stage);
     EXPECT_EQ(faults(), first);
