@@ -24,8 +24,14 @@ constexpr double kSoftness = 1e-6;
 
 }  // namespace
 
+BoxSolver::BoxSolver(Effort& effort) : effort_(effort), steady_(effort, kUsualRows) {
+  for (std::vector<double>* square : {&response_, &old_response_}) take_room(*square, kUsualRows * kUsualRows);
+  take_room(factor_, nth(kMostFree * kMostFree));
+}
+
 void BoxSolver::start(int rows) {
   stride_ = (rows + 1) / 2 * 2;
+  make_room(response_, nth(rows * stride_));
   rows_.assign(nth(rows), Row{});
   response_.assign(nth(rows * stride_), 0);
   left_.assign(nth(stride_), 0);

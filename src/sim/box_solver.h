@@ -29,7 +29,7 @@ class BoxSolver {
     double ahead = 0;        ///< The search begins with so much more than its impulse.
   };
 
-  explicit BoxSolver(Effort& effort) : effort_(effort), steady_(effort) {}
+  explicit BoxSolver(Effort& effort);
   /// Rows and a response of zeros.
   void start(int rows);
   /// As many rows as `from` has, each where that says that it was (-1: new); responses between rows that were are kept,
@@ -60,6 +60,8 @@ class BoxSolver {
  private:
   /// More rows than this are not solved at once: it costs their cube.
   static constexpr int kMostFree = 90;
+  /// Up to so many nothing has to be allocated.
+  static constexpr std::size_t kUsualRows = 160;
   static std::size_t nth(int i) { return static_cast<std::size_t>(i); }
   void bound(Row& row) const;
   double tolerance() const { return effort_.tolerance(asked_); }

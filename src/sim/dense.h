@@ -1,11 +1,36 @@
-// Dense: lines of numbers, two at a time; the same on every processor, whatever its vectors are. [any]
+// Dense: lines of numbers, as many at a time as the processor takes; the same on every one, to the bit. [any]
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <cstring>
 #include <span>
+#include <vector>
 
 namespace limber {
+
+struct ScaledLine {
+  const double* numbers;
+  double scale;
+};
+
+/// Element by element, so lanes of any width say the same; a sum is of four parts, that of every fourth number each.
+struct DenseKernels {
+  void (*subtract_scaled)(double* y, const double* a, double x, int count);
+  void (*subtract_lines)(double* y, std::span<const ScaledLine> lines, int count);
+  void (*subtract_in_turn)(double* y, const double* lines, int stride, std::span<const double> scales, int count);
+  double (*product)(const double* a, const double* b, int count);
+
+  static const DenseKernels& by_two();
+  /// By four where the processor can (AVX2).
+  static const DenseKernels& widest();
+};
+
+namespace dense {
+
+/// Lines from this length on are worth a call.
+constexpr int kLong = 12;
+extern const DenseKernels& kernels;
 
 using Pair [[gnu::vector_size(16)]] = double;
 
@@ -15,8 +40,7 @@ inline Pair load_pair(const double* v) {
   return pair;
 }
 
-/// y -= a·x, over an even count.
-inline void subtract_scaled(double* y, const double* a, double x, int count) {
+inline void subtract_by_two(double* y, const double* a, double x, int count) {
   const Pair scale = {x, x};
   for (int i = 0; i < count; i += 2) {
     const Pair changed = load_pair(y + i) - load_pair(a + i) * scale;
@@ -24,31 +48,7 @@ inline void subtract_scaled(double* y, const double* a, double x, int count) {
   }
 }
 
-struct ScaledLine {
-  const double* numbers;
-  double scale;
-};
-
-/// y -= the sum of all lines, each times its scale, over an even count.
-inline void subtract_scaled(double* y, std::span<const ScaledLine> lines, int count) {
-  std::size_t k = 0;
-  for (; k + 3 < lines.size(); k += 4) {
-    const Pair s0 = {lines[k].scale, lines[k].scale};
-    const Pair s1 = {lines[k + 1].scale, lines[k + 1].scale};
-    const Pair s2 = {lines[k + 2].scale, lines[k + 2].scale};
-    const Pair s3 = {lines[k + 3].scale, lines[k + 3].scale};
-    for (int i = 0; i < count; i += 2) {
-      const Pair first = load_pair(lines[k].numbers + i) * s0 + load_pair(lines[k + 1].numbers + i) * s1;
-      const Pair second = load_pair(lines[k + 2].numbers + i) * s2 + load_pair(lines[k + 3].numbers + i) * s3;
-      const Pair changed = load_pair(y + i) - (first + second);
-      std::memcpy(y + i, &changed, sizeof changed);
-    }
-  }
-  for (; k < lines.size(); ++k) subtract_scaled(y, lines[k].numbers, lines[k].scale, count);
-}
-
-/// The sum of a·b.
-inline double product(const double* a, const double* b, int count) {
+inline double product_by_two(const double* a, const double* b, int count) {
   Pair first = {0, 0};
   Pair second = {0, 0};
   int i = 0;
@@ -60,6 +60,43 @@ inline double product(const double* a, const double* b, int count) {
   double sum = first[0] + first[1];
   for (; i < count; ++i) sum += a[i] * b[i];
   return sum;
+}
+
+}  // namespace dense
+
+/// y -= a·x, over an even count.
+inline void subtract_scaled(double* y, const double* a, double x, int count) {
+  if (count < dense::kLong) return dense::subtract_by_two(y, a, x, count);
+  dense::kernels.subtract_scaled(y, a, x, count);
+}
+
+/// y -= the sum of all lines, each times its scale, over an even count. Four lines are added up before.
+inline void subtract_scaled(double* y, std::span<const ScaledLine> lines, int count) {
+  dense::kernels.subtract_lines(y, lines, count);
+}
+
+/// y -= lines that begin `stride` after each other, each times its scale, one after the other, over any count.
+inline void subtract_in_turn(double* y, const double* lines, int stride, std::span<const double> scales, int count) {
+  dense::kernels.subtract_in_turn(y, lines, stride, scales, count);
+}
+
+/// The sum of a·b.
+inline double product(const double* a, const double* b, int count) {
+  if (count < dense::kLong) return dense::product_by_two(a, b, count);
+  return dense::kernels.product(a, b, count);
+}
+
+/// Room for so many numbers, or for twice what there was room for: sizes that creep up do not allocate each time.
+template <class Number>
+void make_room(std::vector<Number>& numbers, std::size_t count) {
+  if (count > numbers.capacity()) numbers.reserve(std::max(count, 2 * numbers.capacity()));
+}
+
+/// The same before the first use: memory that the system has given already, since that takes microseconds a page.
+template <class Number>
+void take_room(std::vector<Number>& numbers, std::size_t count) {
+  numbers.resize(count);
+  numbers.clear();
 }
 
 }  // namespace limber

@@ -8,11 +8,16 @@
 
 namespace limber {
 
+FreeFactor::FreeFactor(Effort& effort, std::size_t usual_rows) : effort_(effort) {
+  take_room(lines_, usual_rows * usual_rows);
+}
+
 void FreeFactor::start(std::span<const double> matrix, int stride) {
   matrix_ = matrix;
   stride_ = stride;
   rows_.clear();
   chosen_.assign(at(stride), 0);
+  make_room(lines_, matrix.size());
   lines_.resize(matrix.size());
   inverse_.resize(at(stride));
   factored_ = 0;
@@ -40,31 +45,23 @@ bool FreeFactor::choose(std::span<const unsigned char> free, int most) {
 
 bool FreeFactor::factor(int kept) {
   const int n = static_cast<int>(rows_.size());
-  const int width = (n + 1) / 2 * 2;
   effort_.lines(0.5 * n * n, 0.5 * (n - kept));
   for (int i = 0; i < n; ++i) {
     const double* from = &matrix_[at(rows_[at(i)] * stride_)];
     double* to = &lines_[at(i * stride_)];
     for (int k = std::max(i, kept); k < n; ++k) to[k] = from[rows_[at(k)]];
   }
-  for (int c = 0; c < n; ++c) {
-    const double* line = &lines_[at(c * stride_)];
-    if (c >= kept) {
-      factored_ = c;
-      if (!(line[c] > 0) || !std::isfinite(line[c])) return false;
-      inverse_[at(c)] = 1 / line[c];
+  for (int r = 0; r < n; ++r) {
+    double* line = &lines_[at(r * stride_)];
+    if (r >= kept) {
+      for (int c = 0; c < r; ++c) line[c] = lines_[at(c * stride_ + r)] * inverse_[at(c)];
     }
-    for (int r = c + 1; r < n; ++r) {
-      double* other = &lines_[at(r * stride_)];
-      if (r >= kept) other[c] = line[r] * inverse_[at(c)];
-      const double part = other[c];
-      int from = std::max(r, kept);
-      if (from % 2 != 0) {
-        other[from] -= part * line[from];
-        from++;
-      }
-      subtract_scaled(other + from, line + from, part, width - from);
-    }
+    const int from = std::max(r, kept);
+    subtract_in_turn(line + from, &lines_[at(from)], stride_, std::span(line, at(r)), n - from);
+    if (r < kept) continue;
+    factored_ = r;
+    if (!(line[r] > 0) || !std::isfinite(line[r])) return false;
+    inverse_[at(r)] = 1 / line[r];
   }
   factored_ = n;
   return true;

@@ -13,7 +13,8 @@ namespace limber {
 /// Golub and Van Loan, Matrix Computations, 4.1: without exchanges, since what it factors is positive. [sim]
 class FreeFactor {
  public:
-  explicit FreeFactor(Effort& effort) : effort_(effort) {}
+  /// Matrices of up to `usual_rows` need no memory later.
+  explicit FreeFactor(Effort& effort, std::size_t usual_rows = 0);
   /// Of a symmetric matrix, `stride` (even) numbers a line, which stays as it is while rows are chosen. None are.
   void start(std::span<const double> matrix, int stride);
   /// The rows that are to be free (not 0), one mark each; those that were free keep their order, and others come behind

@@ -135,6 +135,7 @@ class IslandDirect {
   void respond(BoxSolver& box, std::span<const int> rows);
   bool build_responses();
   bool extend_responses();
+  int released_with(const OuterRow& row) const;
   static Pull pull_on(const OuterRow& row);
   void answer(const Pull& to, std::span<double> rows, std::span<double> axes);
   bool give_up_pinned();

@@ -131,9 +131,12 @@ bool IslandDirect::extend_responses() {
   const int axes = (count + 1) / 2 * 2;  // behind the rows
   const int width = axes + (freed + 1) / 2 * 2;
   lines_.assign(at(freed * width), 0);
+  answers_.resize(at((freed + 1) * count));
+  const auto answers = [&](int n) { return std::span(answers_).subspan(at(n * count), at(count)); };
   for (int n = 0; n < freed; ++n) {
     double* line = &lines_[at(n * width)];
-    answer(released_[at(n)], std::span(line, at(count)), std::span(line + axes, at(freed)));
+    answer(released_[at(n)], answers(n), std::span(line + axes, at(freed)));
+    std::copy_n(answers(n).data(), count, line);
     const double alone = line[axes + n];
     for (int m = 0; m < n; ++m) {
       const double* before = &lines_[at(m * width)];
@@ -150,17 +153,25 @@ bool IslandDirect::extend_responses() {
   }
   box_.grow(from_);
   box_.add_squares(lines_, width);
-  answers_.resize(at(count));
   for (int i = 0; i < count; ++i) {
     if (from_[at(i)] >= 0) continue;
     const OuterRow& row = outer_[at(boxed_[at(i)])];
-    answer(pull_on(row), answers_, {});
-    for (int k = 0; k < count; ++k) box_.response(i, k) = box_.response(k, i) = answers_[at(k)];
+    const int known_as = released_with(row);
+    if (known_as == freed) answer(pull_on(row), answers(freed), {});
+    for (int k = 0; k < count; ++k) box_.response(i, k) = box_.response(k, i) = answers(known_as)[at(k)];
     box_.response(i, i) += row.softness;
   }
   effort_.lines((freed + count - known) * (system_.trees.size() + count), kAxisNumbers);
   effort_.lines(count * (1 + freed), count);
   return true;
+}
+
+// The axis that let go and that the row is of; behind them all where it is of none.
+int IslandDirect::released_with(const OuterRow& row) const {
+  const auto same = [&row](const Pull& of) {
+    return row.axis != nullptr && of.a.node == row.axis->node && of.axis == row.axis->axis;
+  };
+  return static_cast<int>(std::find_if(released_.begin(), released_.end(), same) - released_.begin());
 }
 
 IslandDirect::Pull IslandDirect::pull_on(const OuterRow& row) {

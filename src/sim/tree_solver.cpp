@@ -48,16 +48,19 @@ void TreeSolver::solve(int first, int last) {
     TreeNode& n = node(i);
     Spatial& push = n.change;
     n.carried_motion = {};
+    bool moves = false;
     for (std::size_t k = 0; k < 6; ++k) {
       if ((n.held >> k & 1) != 0) {
+        if (n.ask[k] == 0) continue;
         n.carried_motion += n.axis[k] * n.ask[k];
+        moves = true;
         continue;
       }
       n.left[k] = (n.ask[k] + dot(n.axis[k], push)) * n.ease[k];
       push = push - n.lean[k] * n.left[k];
     }
     if (n.parent < 0) continue;
-    node(n.parent).change += brought_back(push - n.rigid * n.carried_motion, n.shift);
+    node(n.parent).change += brought_back(moves ? push - n.rigid * n.carried_motion : push, n.shift);
   }
   for (int i = first; i < last; ++i) {
     TreeNode& n = node(i);
