@@ -112,7 +112,8 @@ Spatial IslandDirect::velocity(int body, const IslandPools& pools) const {
 bool IslandDirect::build_forest(const IslandPools& pools) {
   const int bodies = pools.bodies.size();
   const auto moves = [&](int body) { return pools.bodies[body].m_invMass.x() > 0; };
-  system_.clear();
+  system_.clear(bodies);
+  poses_.clear(bodies);
   trees_.clear();
   tree_of_.clear();
   body_of_.clear();

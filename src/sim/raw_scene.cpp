@@ -22,16 +22,17 @@ class Player : public RawPlayer {
   explicit Player(const RawScene& raw) : scene(raw) {}
   Pose pose(int part) const override { return from_bt(bodies[static_cast<std::size_t>(part)]->getWorldTransform()); }
 
-  double energy() const override {
-    double sum = 0;
+  RawEnergy energy() const override {
+    RawEnergy sum;
     for (const auto& body : bodies) {
       if (body->isStaticObject()) continue;
       const double mass = 1 / static_cast<double>(body->getInvMass());
       const Vec3 v = from_bt(body->getLinearVelocity());
       const Vec3 spin = from_bt(body->getWorldTransform().getBasis().transpose() * body->getAngularVelocity());
       const Vec3 inverse = from_bt(body->getInvInertiaDiagLocal());
-      sum += mass * (glm::dot(v, v) / 2 - glm::dot(scene.gravity, from_bt(body->getWorldTransform().getOrigin())));
-      for (int i = 0; i < 3; ++i) sum += spin[i] * spin[i] / inverse[i] / 2;
+      sum.potential -= mass * glm::dot(scene.gravity, from_bt(body->getWorldTransform().getOrigin()));
+      sum.kinetic += mass * glm::dot(v, v) / 2;
+      for (int i = 0; i < 3; ++i) sum.kinetic += spin[i] * spin[i] / inverse[i] / 2;
     }
     return sum;
   }
@@ -270,6 +271,11 @@ void RawFigures::take(const RawFigures& o) {
   limit_passed = std::max(limit_passed, o.limit_passed);
   speed = std::max(speed, o.speed);
   finite = finite && o.finite;
+}
+
+double RawEnergyMeter::take() {
+  const RawEnergy before = std::exchange(way_, player_.energy());
+  return before.potential + (before.kinetic + way_.kinetic) / 2;
 }
 
 std::unique_ptr<RawPlayer> RawPlayer::make(const RawScene& scene, RawSolver solver) {

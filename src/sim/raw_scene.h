@@ -63,6 +63,12 @@ struct RawFigures {
   void take(const RawFigures& o);
 };
 
+/// Of all moving parts, J.
+struct RawEnergy {
+  double kinetic = 0;
+  double potential = 0;  ///< Against gravity; 0 at the origin.
+};
+
 /// A scene in a world. [sim]
 class RawPlayer {
  public:
@@ -73,7 +79,7 @@ class RawPlayer {
   /// One internal step; servos go where they should be at the present time.
   virtual void step() = 0;
   virtual RawFigures figures() const = 0;
-  virtual double energy() const = 0;
+  virtual RawEnergy energy() const = 0;
   virtual Pose pose(int part) const = 0;
   /// Island steps by solver, and residuals, of the direct one.
   struct Direct {
@@ -81,6 +87,22 @@ class RawPlayer {
     double locked = 0, bounded = 0, contact = 0;
   };
   virtual Direct direct() const { return {}; }
+};
+
+/// Energy at ticks, J. A semi-implicit step moves by the velocities that it ends with: they are those of the way from
+/// one tick to the next. At a tick kinetic energy is the mean of that on the way there and on the way on, which is
+/// right to the second order of the step (the velocities of Störmer and Verlet; Hairer, Lubich and Wanner 2003) and,
+/// where it errs, high. With the velocities of one of the ways it would be right to the first order alone. [sim]
+class RawEnergyMeter {
+ public:
+  /// After a step, the first at least.
+  explicit RawEnergyMeter(const RawPlayer& player) : player_(player), way_(player.energy()) {}
+  /// After the next one: at the tick between the two.
+  double take();
+
+ private:
+  const RawPlayer& player_;
+  RawEnergy way_;  // kinetic on the way to the tick, potential there
 };
 
 }  // namespace limber

@@ -6,8 +6,8 @@
 
 namespace limber {
 
-void TreeRows::clear() {
-  trees.clear();
+void TreeRows::clear(int room) {
+  trees.clear(room);
   rows_.clear();
   pending_.clear();
   row_start_.assign(1, 0);

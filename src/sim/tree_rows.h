@@ -45,7 +45,8 @@ class TreeRows {
 
   TreeSolver trees;
 
-  void clear();
+  /// No nodes; memory for so many is at hand.
+  void clear(int room = 0);
   /// Rows of the node last added to `trees`, between two calls of end_node.
   TreeRow& add(int axis, double velocity, double softness, double lower, double upper, TreeRow::Mark mark);
   /// `rates`: of the node's axes, as they are before the step's impulses; `before`: the state of the last step.

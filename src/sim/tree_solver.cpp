@@ -2,9 +2,12 @@
 // nothing. Then impulses run up to the roots and velocities down to the leaves.
 #include "sim/tree_solver.h"
 
+#include <algorithm>
 #include <bit>
 #include <cmath>
 #include <utility>
+
+#include "sim/dense.h"
 
 namespace limber {
 namespace {
@@ -13,6 +16,12 @@ namespace {
 constexpr double kLeastEase = 1e-9;
 
 }  // namespace
+
+void TreeSolver::clear(int room) {
+  const auto count = static_cast<std::size_t>(room);
+  if (count > nodes_.capacity()) take_room(nodes_, std::max(count, 2 * nodes_.capacity()));
+  nodes_.clear();
+}
 
 TreeNode& TreeSolver::add(int parent) {
   TreeNode& n = nodes_.emplace_back();

@@ -48,7 +48,8 @@ struct TreeLoad {
 /// [sim]
 class TreeSolver {
  public:
-  void clear() { nodes_.clear(); }
+  /// No nodes; memory for so many is at hand.
+  void clear(int room);
   /// A node after its parent; those of one tree follow each other. It keeps nothing of what was there before.
   TreeNode& add(int parent);
   int size() const { return static_cast<int>(nodes_.size()); }
