@@ -149,16 +149,16 @@ void subtract_in_turn_by_two(double* y, const double* lines, int stride, std::sp
 }  // namespace
 
 const DenseKernels& DenseKernels::by_two() {
-  static constexpr DenseKernels kernels{dense::subtract_by_two, subtract_lines_by_two, subtract_in_turn_by_two,
-                                        dense::product_by_two};
-  return kernels;
+  static constexpr DenseKernels kByTwo{dense::subtract_by_two, subtract_lines_by_two, subtract_in_turn_by_two,
+                                       dense::product_by_two};
+  return kByTwo;
 }
 
 const DenseKernels& DenseKernels::widest() {
 #if defined(__x86_64__)
-  static constexpr DenseKernels by_four{subtract_by_four, subtract_lines_by_four, subtract_in_turn_by_four,
+  static constexpr DenseKernels kByFour{subtract_by_four, subtract_lines_by_four, subtract_in_turn_by_four,
                                         product_by_four};
-  if (__builtin_cpu_supports("avx2")) return by_four;
+  if (__builtin_cpu_supports("avx2")) return kByFour;
 #endif
   return by_two();
 }
