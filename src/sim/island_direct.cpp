@@ -12,8 +12,10 @@ namespace {
 constexpr int kExchanges = 16;
 /// Rounds in which axes may still be given up once contacts are known.
 constexpr int kRounds = 8;
-/// Motors keep below this turn of a body in one step, rad.
+/// Motors keep below this turn of a body in one step, rad; where they do not, they ask for this, since what else acts on
+/// the body does not become less with them.
 constexpr double kMostTurn = 0.5;
+constexpr double kTurnGoal = 0.44;
 /// So often bends are corrected.
 constexpr int kBends = 4;
 /// Fastest bend, m/s: what flies apart is not pulled together in one step.
@@ -145,7 +147,7 @@ bool IslandDirect::limit_turns(const IslandPools& pools, double h) {
     for (int i = t.first; i < t.last; ++i) {
       for (TreeRow& row : system_.rows(i)) {
         if (!row.bounded() || row.constant()) continue;
-        row.velocity *= kMostTurn / (fastest * h);
+        row.velocity *= kTurnGoal / (fastest * h);
         changed = true;
       }
     }
