@@ -12,8 +12,8 @@ namespace {
 constexpr int kExchanges = 16;
 /// Rounds in which axes may still be given up once contacts are known.
 constexpr int kRounds = 8;
-/// Motors keep below this turn of a body in one step, rad; where they do not, they ask for this, since what else acts on
-/// the body does not become less with them.
+/// Motors keep below this turn of a body in one step, rad; where they do not, they ask for this, since what else acts
+/// on the body does not become less with them.
 constexpr double kMostTurn = 0.5;
 constexpr double kTurnGoal = 0.44;
 /// So often bends are corrected.
