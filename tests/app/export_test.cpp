@@ -39,7 +39,7 @@ std::string record(const Folder& folder, const std::string& scene, const std::st
   return take;
 }
 
-std::vector<std::string> names_in(const std::string& folder) {
+std::vector<std::string> files_in(const std::string& folder) {
   std::vector<std::string> all;
   for (const auto& entry : std::filesystem::directory_iterator(folder)) all.push_back(entry.path().filename());
   std::sort(all.begin(), all.end());
@@ -92,9 +92,9 @@ TEST(Export, EachFormatHasTheEnginesPoses) {
     EXPECT_NE(ran.err.find("replayed 80 ticks: every hash is the take's\n"), std::string::npos) << ran.err;
     EXPECT_EQ(ran.out, "");
   }
-  EXPECT_EQ(names_in(folder.path()),
+  EXPECT_EQ(files_in(folder.path()),
             (std::vector<std::string>{"show.csv", "show.glb", "show.lua", "show.take", "show_bvh"}));
-  EXPECT_EQ(names_in(folder.path() + "/show_bvh"), (std::vector<std::string>{"ball.bvh", "guest.bvh", "my arm.bvh"}));
+  EXPECT_EQ(files_in(folder.path() + "/show_bvh"), (std::vector<std::string>{"ball.bvh", "guest.bvh", "my arm.bvh"}));
   const Loaded gltf(folder.path() + "/show.glb");
   const Loaded bvh(folder.path() + "/show_bvh/my arm.bvh");
   const auto table = table_of(folder.path() + "/show.csv");
@@ -248,7 +248,7 @@ TEST(Export, BodiesAreChosen) {
   const Ran many = run({"export", take, "-o", folder.path() + "/many.bvh"});
   EXPECT_NE(many.err.find("choose one by --body"), std::string::npos) << many.err;
   EXPECT_NE(many.code, 0);
-  EXPECT_EQ(names_in(folder.path()), (std::vector<std::string>{"one.bvh", "show.lua", "show.take", "two.csv"}));
+  EXPECT_EQ(files_in(folder.path()), (std::vector<std::string>{"one.bvh", "show.lua", "show.take", "two.csv"}));
 }
 
 TEST(Export, NothingIsWrittenOverUnasked) {
@@ -280,7 +280,7 @@ TEST(Export, CancelledItLeavesNothing) {
     int asked = 0;
     EXPECT_EQ(export_take(command, [&] { return ++asked > 20; }), 1);
     EXPECT_EQ(asked, 21);
-    EXPECT_EQ(names_in(folder.path()), (std::vector<std::string>{"show.lua", "show.take"})) << name;
+    EXPECT_EQ(files_in(folder.path()), (std::vector<std::string>{"show.lua", "show.take"})) << name;
   }
 }
 
@@ -292,7 +292,7 @@ TEST(Export, AFullDiskIsTheMachinesFault) {
   const Ran ran = Running({"/bin/sh", "-c", command}).finish();
   EXPECT_EQ(ran.code, 3) << ran.err;
   EXPECT_NE(ran.err.find("show.csv can't be written: File too large"), std::string::npos) << ran.err;
-  EXPECT_EQ(names_in(folder.path()), (std::vector<std::string>{"show.lua", "show.take"}));
+  EXPECT_EQ(files_in(folder.path()), (std::vector<std::string>{"show.lua", "show.take"}));
 }
 
 TEST(Export, ATakeThatWasCutOffGoesToItsLastTick) {

@@ -4,9 +4,6 @@
 namespace limber::gui_test {
 namespace {
 
-constexpr KeyMods kCtrl{true, false, false};
-constexpr KeyMods kCtrlShift{true, true, false};
-
 TEST(Desk, UndoesOneDragAtATime) {
   PanelRig rig;
   rig.drag("/scene/rate", 0.75);

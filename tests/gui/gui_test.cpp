@@ -76,8 +76,6 @@ TEST(Gui, F3ShowsTheDebugPicture) {
 
 TEST(Gui, NineViewsAreKeptAndTakenAgain) {
   PanelRig rig;
-  constexpr KeyMods kCtrl{true, false, false};
-  constexpr KeyMods kCtrlShift{true, true, false};
   const auto look = [&](double x) {
     for (const char* row : {"/visuals/camera/eye", "/visuals/camera/target", "/visuals/camera/eye"})
       rig.show.send(row, x, std::string_view(row).ends_with("eye") ? -5.0 : 1.0, 2.0);
@@ -124,7 +122,6 @@ TEST(Gui, TheChosenStyleIsRememberedUnlessTheSceneHasItsOwn) {
 
 TEST(Gui, TextGrowsFrom12To28) {
   PanelRig rig;
-  constexpr KeyMods kCtrl{true, false, false};
   const double before = rig.where("transport.play").height;
   for (int i = 0; i < 20; i++) rig.key(GuiKey::equal, kCtrl);
   EXPECT_EQ(rig.gui->settings().text_size, 28);

@@ -8,9 +8,6 @@
 namespace limber::gui_test {
 namespace {
 
-constexpr KeyMods kHeldCtrl{true, false, false};
-constexpr KeyMods kHeldCtrlShift{true, true, false};
-
 std::vector<std::string> takes_in(const std::filesystem::path& folder) {
   std::vector<std::string> files;
   std::error_code none;
@@ -23,7 +20,7 @@ TEST(PanelTime, AKeyRecordsATakeAndTheButtonEndsIt) {
   PanelRig rig;
   rig.show.ticks(30);
   EXPECT_FALSE(rig.sees("take.text"));
-  rig.key(GuiKey::r, kHeldCtrl);
+  rig.key(GuiKey::r, kCtrl);
   EXPECT_EQ(rig.read("/physics/sim/tick"), 0) << "from the scene's start";
   rig.show.ticks(45);
   rig.heard();
@@ -46,7 +43,7 @@ TEST(PanelTime, CtrlRIsNoMessageWhereOneTypes) {
   PanelRig rig;
   rig.show.ticks(30);
   rig.click("parameters.search");
-  rig.key(GuiKey::r, kHeldCtrl);
+  rig.key(GuiKey::r, kCtrl);
   EXPECT_EQ(rig.read("/physics/sim/tick"), 30) << "in a shell it searches; nobody's show begins anew for that";
   EXPECT_TRUE(rig.gui->desk().take().name.empty());
 }
@@ -103,7 +100,7 @@ TEST(PanelTime, TheNewestTakePlaysByAButtonAndAKey) {
   rig.show.link.ask_scenes = [&](const Message& wish, const Origin&) { asked.push_back(wish.address); };
   rig.click("take.play");
   EXPECT_EQ(asked, (std::vector<std::string>{"/take/play"}));
-  rig.key(GuiKey::r, kHeldCtrlShift);
+  rig.key(GuiKey::r, kCtrlShift);
   EXPECT_EQ(asked.size(), 2u);
   rig.click("transport.record");
   rig.show.ticks(40);

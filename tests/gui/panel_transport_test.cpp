@@ -33,9 +33,6 @@ TEST(PanelTransport, SpaceIsALetterWhereOneTypes) {
   EXPECT_EQ(rig.read("/physics/sim/paused"), 1);
 }
 
-constexpr KeyMods kCtrl{true, false, false};
-constexpr KeyMods kShift{false, true, false};
-
 TEST(PanelTransport, PanicBringsToRestAndOnceMoreGoesOn) {
   PanelRig rig;
   rig.show.ticks(60);

@@ -14,6 +14,10 @@
 namespace limber::gui_test {
 
 /// A scene with everything that a panel shows: two bodies with joints and motors, behaviours, parameters.
+inline constexpr KeyMods kCtrl{true, false, false};
+inline constexpr KeyMods kShift{false, true, false};
+inline constexpr KeyMods kCtrlShift{true, true, false};
+
 inline constexpr const char* kScene = R"(
 params {
   { "rate", 0.5, min = 0, max = 2, unit = "Hz", doc = "How often." },

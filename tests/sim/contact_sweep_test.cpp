@@ -9,7 +9,7 @@
 namespace limber {
 namespace {
 
-constexpr int kBodies = 12;  // the first stands
+constexpr int kBodyCount = 12;  // the first stands
 constexpr int kPairs = 40;
 
 // Bullet's solver with rows of our choice in its pools.
@@ -19,10 +19,10 @@ class Bullet : public btSequentialImpulseConstraintSolver {
     info_.m_numIterations = 1;
     info_.m_splitImpulse = 1;
     info_.m_solverMode = SOLVER_USE_WARMSTARTING | SOLVER_SIMD | SOLVER_USE_2_FRICTION_DIRECTIONS;
-    for (int i = 0; i < kBodies; ++i) add_body(i > 0);
+    for (int i = 0; i < kBodyCount; ++i) add_body(i > 0);
     for (int i = 0; i < kPairs; ++i) {
-      const int a = static_cast<int>(generator_() % kBodies);
-      const int b = (a + 1 + static_cast<int>(generator_() % (kBodies - 1))) % kBodies;
+      const int a = static_cast<int>(generator_() % kBodyCount);
+      const int b = (a + 1 + static_cast<int>(generator_() % (kBodyCount - 1))) % kBodyCount;
       for (unsigned points = generator_() % 4 + 1; points > 0; --points) add_contact(a, b);
     }
     for (int i = 0; i < friction().size(); ++i) {
@@ -105,7 +105,7 @@ class Bullet : public btSequentialImpulseConstraintSolver {
 bool same(const btVector3& x, const btVector3& y) { return std::memcmp(&x, &y, 3 * sizeof(float)) == 0; }
 
 void expect_same(Bullet& ours, Bullet& theirs) {
-  for (int i = 0; i < kBodies; ++i) {
+  for (int i = 0; i < kBodyCount; ++i) {
     const btSolverBody& x = ours.bodies()[i];
     const btSolverBody& y = theirs.bodies()[i];
     EXPECT_TRUE(x.m_originalBody == nullptr || same(x.m_deltaLinearVelocity, y.m_deltaLinearVelocity)) << i;
