@@ -50,7 +50,7 @@ build() {
 }
 
 # rooms whose tests take longest: they begin first, in two halves, so that no core waits for one of them at the end
-slow_rooms="engine script scenes sim"
+slow_rooms="app engine scenes script sim"
 
 # begin_tests FOLDER ROOM...: runs test_ROOM of that build, one a core; each part leaves a log, and its exit code and
 # seconds

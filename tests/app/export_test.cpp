@@ -33,7 +33,7 @@ sim:at(1.0, function() sim:body("guest"):remove() end)
 
 std::string record(const Folder& folder, const std::string& scene, const std::string& ticks,
                    const std::string& name = "show") {
-  const std::string take = folder.path() + "/" + name + ".take";
+  std::string take = folder.path() + "/" + name + ".take";
   const Ran ran = run({folder.file(name + ".lua", scene), "--fast", "--ticks", ticks, "--record", take});
   EXPECT_EQ(ran.code, 0) << ran.err;
   return take;
@@ -183,7 +183,7 @@ ball.angular_velocity = vec3(0, 0, 2)
 // time begins anew in the show, and goes on in the file; the bodies are the same
 // a ball that flies at 1 m/s, and a message from outside in mid-way
 std::string record_ball(const Folder& folder, int before, const Message& message, int after) {
-  const std::string take = folder.path() + "/show.take";
+  std::string take = folder.path() + "/show.take";
   EngineOptions options;
   options.scene = folder.file("show.lua", R"(
 sim.gravity = vec3(0, 0, 0)

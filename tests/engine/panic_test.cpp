@@ -39,7 +39,7 @@ osc:on("/panic", function() sim:panic() end)
 constexpr const char* kBallSpeed = "/physics/body/ball/part/ball/linear_velocity";
 constexpr const char* kPanicked = "/physics/sim/panicked";
 
-std::string answer(Show& show, const char* address) {
+std::string said_under(Show& show, const char* address) {
   show.outbox();
   show.send(address);
   show.ticks(1);
@@ -79,7 +79,7 @@ TEST(PanicButton, ScriptsRestWhileItHoldsAndMessagesAreHeard) {
   show.send("/transport/panic");
   show.ticks(60);
   EXPECT_LT(std::abs(show.read(kBallSpeed, 1)), 0.02);
-  const std::string before = answer(show, "/steps");
+  const std::string before = said_under(show, "/steps");
   ASSERT_FALSE(before.empty());
   show.send("/push");
   show.send("/physics/part/hold", "ball", "ball", 0, 0, 0, 9, 9, 9);
@@ -88,7 +88,7 @@ TEST(PanicButton, ScriptsRestWhileItHoldsAndMessagesAreHeard) {
   show.ticks(1);
   EXPECT_LT(std::abs(show.read(kBallSpeed, 2)), 0.02) << "no force gets through";
   EXPECT_EQ(show.read("/physics/sim/gravity", 2), 3) << "a value does";
-  EXPECT_EQ(answer(show, "/steps"), before);
+  EXPECT_EQ(said_under(show, "/steps"), before);
   EXPECT_EQ(show.read("/physics/body/ball/behavior/wind/active"), 1);
 }
 
