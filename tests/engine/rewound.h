@@ -119,7 +119,7 @@ inline void many_hands(Show& show, std::uint64_t tick) {
   if (some(25) == 0) {
     auto wish = std::make_shared<Evaluate>();
     wish->text = "sim:body('stone7').parts[1]:apply_impulse(rng:direction() * 0.1)";
-    wish->answer = [](Evaluation) {};
+    wish->answer = [](const Evaluation&) {};
     show.link.inbox.push({{}, {Hand::console}, std::move(wish)});
   }
 }
