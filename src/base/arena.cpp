@@ -9,6 +9,13 @@
 
 #include <sys/mman.h>
 
+#if defined(__has_feature)
+#if __has_feature(address_sanitizer)
+#include <sanitizer/lsan_interface.h>
+#define LIMBER_LEAKS_ARE_LOOKED_FOR
+#endif
+#endif
+
 namespace limber {
 
 namespace {
@@ -68,8 +75,17 @@ struct Arena::Head {
 };
 
 namespace {
+
 constexpr std::size_t kHeadSize = 4096;
+
+// What blocks of an arena point to has an owner: the leak sanitizer looks at them, too.
+void show_to_leak_search([[maybe_unused]] void* begin, [[maybe_unused]] bool shown) {
+#ifdef LIMBER_LEAKS_ARE_LOOKED_FOR
+  (shown ? __lsan_register_root_region : __lsan_unregister_root_region)(begin, Arena::kReserve);
+#endif
 }
+
+}  // namespace
 
 Arena::Arena() {
   static_assert(sizeof(Head) <= kHeadSize && sizeof(Chunk) == 32);
@@ -81,6 +97,7 @@ Arena::Arena() {
     munmap(got, kReserve);
     return;
   }
+  show_to_leak_search(got, true);
   head_ = new (begin) Head;
   head_->open.fill(kNone);
   chunks_ = reinterpret_cast<Chunk*>(begin + kHeadSize);
@@ -91,7 +108,9 @@ Arena::Arena() {
 }
 
 Arena::~Arena() {
-  if (head_ != nullptr) munmap(static_cast<void*>(head_), kReserve);
+  if (head_ == nullptr) return;
+  show_to_leak_search(static_cast<void*>(head_), false);
+  munmap(static_cast<void*>(head_), kReserve);
 }
 
 std::byte* Arena::data_of(std::uint32_t chunk) const { return data_ + std::size_t{chunk} * kChunk; }

@@ -10,6 +10,13 @@
 
 #include "base/random.h"
 
+#if defined(__has_feature)
+#if __has_feature(address_sanitizer)
+#include <sanitizer/lsan_interface.h>
+#define LIMBER_LEAKS_ARE_LOOKED_FOR
+#endif
+#endif
+
 namespace limber {
 namespace {
 
@@ -96,6 +103,24 @@ TEST(Arena, EndsWithoutMore) {
   arena.free(some);
   EXPECT_NE(arena.allocate(Arena::kReserve / 2), nullptr);
 }
+
+#ifdef LIMBER_LEAKS_ARE_LOOKED_FOR
+// where nothing else knows of it, neither a register nor what is left on the stack
+[[gnu::noinline]] void keep_something(int** at) { *at = new int[1000]; }
+[[gnu::noinline]] int overwritten_stack() {
+  volatile int numbers[4096] = {};
+  return numbers[100];
+}
+
+TEST(Arena, WhatItsBlocksPointToIsNoLeak) {
+  Arena arena;
+  auto* const kept = static_cast<int**>(arena.allocate(sizeof(int*)));
+  keep_something(kept);
+  EXPECT_EQ(overwritten_stack(), 0);
+  EXPECT_EQ(__lsan_do_recoverable_leak_check(), 0);
+  delete[] * kept;
+}
+#endif
 
 // what lives on after an image was taken does not matter: the image brings back all blocks, and all that comes after
 // lies where it lay
