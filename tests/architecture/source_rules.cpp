@@ -65,6 +65,7 @@ constexpr std::array kLibraries{
     Library{"CLI/", "app"},
     Library{"histedit.h", "app"},
     Library{"spdlog/", "base"},
+    Library{"sanitizer/", "base"},
     Library{"fmt/", ""},
     Library{"glm/", ""},
     Library{"nlohmann/", ""},
