@@ -49,9 +49,26 @@ void Edits::heard(const Store& store, NodeId id, const Row& row, bool later, con
   step.time = time_;
   step.later = step.later || later;
   if (!now_->take(id, row)) return;
+  if (step.edits.size() >= step.look_at) forget_gone(step, store);
   step.edits.push_back({id, &row, step.values.size()});
   step.values.insert(step.values.end(), before, before + row.width);
   values_ += row.width;
+}
+
+// What has gone can't be undone. A hand that never pauses goes on with one step, which would gather all that ever came.
+void Edits::forget_gone(Step& step, const Store& store) {
+  std::size_t values = 0;
+  std::size_t edits = 0;
+  for (Edit edit : step.edits) {
+    if (!store.alive(edit.id)) continue;
+    std::copy_n(&step.values[edit.at], edit.row->width, &step.values[values]);
+    edit.at = std::exchange(values, values + edit.row->width);
+    step.edits[edits++] = edit;
+  }
+  values_ -= step.values.size() - values;
+  step.values.resize(values);
+  step.edits.resize(edits);
+  step.look_at = std::max(step.look_at, 2 * step.edits.size());
 }
 
 // the step of this hand that goes on, or a new one

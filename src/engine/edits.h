@@ -60,8 +60,9 @@ class Edits {
     std::vector<Edit> edits;
     std::vector<double> values;  // that the rows do not have: before the step, or after it once it is undone
     PerformerHand::Before hand;
-    bool settled = false;  // it is a step
-    bool later = false;    // it sets values as time goes on
+    bool settled = false;       // it is a step
+    bool later = false;         // it sets values as time goes on
+    std::size_t look_at = 256;  // so many edits, of which some may be of what has gone
   };
   // which rows a step that may go on has
   struct Open {
@@ -106,6 +107,7 @@ class Edits {
   Open& open_for(NodeId id, const Row& row);
   Open& open_new();
   void settle(const Store& store);
+  void forget_gone(Step& step, const Store& store);
   void trim();
   void drop(const Step* step);
   bool goes_on(const Step& step, const World& world) const;

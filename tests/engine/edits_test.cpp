@@ -286,5 +286,40 @@ TEST(Edits, TheOldestStepsGo) {
   EXPECT_EQ(undone, Edits::kMostSteps);
 }
 
+// one hand, always the same value, and things that come and go: one step that goes on for as long as the show does
+TEST(Edits, AHandThatNeverPausesForgetsWhatHasGone) {
+  static const Row& gravity = World::table().at("gravity");
+  static const Row& collides = Body::table().at("self_collision");
+  Store store;
+  World world(store);
+  PerformerHand hand;
+  Edits edits(hand);
+  const auto set = [&](NodeId id, const Row& row, std::vector<double> values) {
+    const std::vector<double> before(store.values(id, row), store.values(id, row) + row.width);
+    ASSERT_TRUE(store.set(id, row, values));
+    edits.heard(store, id, row, false, before.data());
+  };
+  Body* const stays = *world.add_body("stays");
+  std::size_t most = 0;
+  for (int round = 0; round < 5000; round++) {
+    Body* const guest = *world.add_body("guest");
+    edits.begin({Hand::osc, 0x7f000001, 4000}, world);
+    set(world.id(), gravity, {0, 0, -1.0 - round % 7});
+    if (round == 2500) set(stays->id(), collides, {0});
+    set(guest->id(), collides, {0});
+    edits.end(store);
+    most = std::max(most, edits.memory()->size());
+    world.remove_body(*guest);
+  }
+  EXPECT_LT(most, 10000u) << "5000 guests take 80000 bytes";
+  ASSERT_TRUE(edits.undo(world));
+  EXPECT_EQ(store.values(world.id(), gravity)[2], -9.81);
+  EXPECT_EQ(store.values(stays->id(), collides)[0], 1);
+  EXPECT_FALSE(edits.undo(world)) << "it is one step";
+  ASSERT_TRUE(edits.redo(world));
+  EXPECT_EQ(store.values(world.id(), gravity)[2], -1.0 - 4999 % 7);
+  EXPECT_EQ(store.values(stays->id(), collides)[0], 0);
+}
+
 }  // namespace
 }  // namespace limber::engine_test
