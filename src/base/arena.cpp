@@ -9,11 +9,10 @@
 
 #include <sys/mman.h>
 
-#if defined(__has_feature)
-#if __has_feature(address_sanitizer)
+#include "base/sanitized.h"
+
+#ifdef LIMBER_WATCHES_ADDRESSES
 #include <sanitizer/lsan_interface.h>
-#define LIMBER_LEAKS_ARE_LOOKED_FOR
-#endif
 #endif
 
 namespace limber {
@@ -80,7 +79,7 @@ constexpr std::size_t kHeadSize = 4096;
 
 // What blocks of an arena point to has an owner: the leak sanitizer looks at them, too.
 void show_to_leak_search([[maybe_unused]] void* begin, [[maybe_unused]] bool shown) {
-#ifdef LIMBER_LEAKS_ARE_LOOKED_FOR
+#ifdef LIMBER_WATCHES_ADDRESSES
   (shown ? __lsan_register_root_region : __lsan_unregister_root_region)(begin, Arena::kReserve);
 #endif
 }

@@ -4,21 +4,12 @@
 #include <cstddef>
 #include <cstdint>
 
+#include "base/sanitized.h"
+
 namespace limber {
 
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
-#define LIMBER_SANITIZED 1
-#elif defined(__has_feature)
-#if __has_feature(address_sanitizer) || __has_feature(thread_sanitizer)
-#define LIMBER_SANITIZED 1
-#endif
-#endif
-
-#ifdef LIMBER_SANITIZED
-inline constexpr double kBudgetScale = 10;  ///< Sanitizers slow our side of the door by about that.
-#else
-inline constexpr double kBudgetScale = 1;
-#endif
+/// Sanitizers slow our side of the door by about that.
+inline constexpr double kBudgetScale = kSanitized ? 10 : 1;
 
 /// How a Lua state runs. Only one in the process can be live: compiled code is stopped through LuaJIT's profiler.
 enum class VmMode : std::uint8_t {

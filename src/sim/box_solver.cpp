@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/room.h"
 #include "sim/dense.h"
 
 namespace limber {

@@ -1,11 +1,9 @@
 // Dense: lines of numbers, as many at a time as the processor takes; the same on every one, to the bit. [any]
 #pragma once
 
-#include <algorithm>
 #include <cstddef>
 #include <cstring>
 #include <span>
-#include <vector>
 
 namespace limber {
 
@@ -84,19 +82,6 @@ inline void subtract_in_turn(double* y, const double* lines, int stride, std::sp
 inline double product(const double* a, const double* b, int count) {
   if (count < dense::kLong) return dense::product_by_two(a, b, count);
   return dense::kernels.product(a, b, count);
-}
-
-/// Room for so many numbers, or for twice what there was room for: sizes that creep up do not allocate each time.
-template <class Number>
-void make_room(std::vector<Number>& numbers, std::size_t count) {
-  if (count > numbers.capacity()) numbers.reserve(std::max(count, 2 * numbers.capacity()));
-}
-
-/// The same before the first use: memory that the system has given already, since that takes microseconds a page.
-template <class Number>
-void take_room(std::vector<Number>& numbers, std::size_t count) {
-  numbers.resize(count);
-  numbers.clear();
 }
 
 }  // namespace limber

@@ -2,12 +2,11 @@
 // nothing. Then impulses run up to the roots and velocities down to the leaves.
 #include "sim/tree_solver.h"
 
-#include <algorithm>
 #include <bit>
 #include <cmath>
 #include <utility>
 
-#include "sim/dense.h"
+#include "base/room.h"
 
 namespace limber {
 namespace {
@@ -17,11 +16,7 @@ constexpr double kLeastEase = 1e-9;
 
 }  // namespace
 
-void TreeSolver::clear(int room) {
-  const auto count = static_cast<std::size_t>(room);
-  if (count > nodes_.capacity()) take_room(nodes_, std::max(count, 2 * nodes_.capacity()));
-  nodes_.clear();
-}
+void TreeSolver::clear(int room) { take_room(nodes_, static_cast<std::size_t>(room)); }
 
 TreeNode& TreeSolver::add(int parent) {
   TreeNode& n = nodes_.emplace_back();

@@ -9,12 +9,10 @@
 #include <vector>
 
 #include "base/random.h"
+#include "base/sanitized.h"
 
-#if defined(__has_feature)
-#if __has_feature(address_sanitizer)
+#ifdef LIMBER_WATCHES_ADDRESSES
 #include <sanitizer/lsan_interface.h>
-#define LIMBER_LEAKS_ARE_LOOKED_FOR
-#endif
 #endif
 
 namespace limber {
@@ -104,7 +102,7 @@ TEST(Arena, EndsWithoutMore) {
   EXPECT_NE(arena.allocate(Arena::kReserve / 2), nullptr);
 }
 
-#ifdef LIMBER_LEAKS_ARE_LOOKED_FOR
+#ifdef LIMBER_WATCHES_ADDRESSES
 // where nothing else knows of it, neither a register nor what is left on the stack
 [[gnu::noinline]] void keep_something(int** at) { *at = new int[1000]; }
 [[gnu::noinline]] int overwritten_stack() {

@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "base/sanitized.h"
 #include "behavior_stage.h"
 
 namespace limber {
@@ -130,10 +131,7 @@ Trajectory played(const std::string& type, const std::string& opts, bool group) 
 class Twins : public ::testing::TestWithParam<Twin> {};
 
 // all sets are compared where that is quick; under the address sanitizer each type moves by its first
-#ifndef __has_feature  // clang's
-#define __has_feature(name) 0
-#endif
-constexpr std::size_t kSets = __has_feature(address_sanitizer) ? 1 : 100;
+constexpr std::size_t kSets = kWatchesAddresses ? 1 : 100;
 
 // how far apart the twins come, and how far they come from where they began
 std::pair<double, double> deviation(const Trajectory& a, const Trajectory& b) {

@@ -97,20 +97,5 @@ INSTANTIATE_TEST_SUITE_P(Lanes, Dense,
                          testing::Values(Case{"two", DenseKernels::by_two()}, Case{"widest", DenseKernels::widest()}),
                          [](const auto& info) { return info.param.name; });
 
-TEST(Room, SizesThatCreepUpDoNotAllocateEachTime) {
-  std::vector<double> numbers;
-  int moves = 0;
-  for (std::size_t count = 1; count <= 1000; ++count) {
-    const std::size_t before = numbers.capacity();
-    make_room(numbers, count);
-    EXPECT_GE(numbers.capacity(), count);
-    moves += numbers.capacity() != before ? 1 : 0;
-  }
-  EXPECT_LE(moves, 11);
-  take_room(numbers, 5000);
-  EXPECT_GE(numbers.capacity(), 5000u);
-  EXPECT_TRUE(numbers.empty());
-}
-
 }  // namespace
 }  // namespace limber

@@ -1,0 +1,25 @@
+// Room that grows in steps.
+#include "base/room.h"
+
+#include <gtest/gtest.h>
+
+namespace limber {
+namespace {
+
+TEST(Room, SizesThatCreepUpDoNotAllocateEachTime) {
+  std::vector<double> numbers;
+  int moves = 0;
+  for (std::size_t count = 1; count <= 1000; ++count) {
+    const std::size_t before = numbers.capacity();
+    make_room(numbers, count);
+    EXPECT_GE(numbers.capacity(), count);
+    moves += numbers.capacity() != before ? 1 : 0;
+  }
+  EXPECT_LE(moves, 11);
+  take_room(numbers, 5000);
+  EXPECT_GE(numbers.capacity(), 5000u);
+  EXPECT_TRUE(numbers.empty());
+}
+
+}  // namespace
+}  // namespace limber
