@@ -240,13 +240,14 @@ bool Guard::place_of(lua_State* state) {
   return false;
 }
 
+std::string Guard::memory_text() const {
+  return fmt::format(
+      "scripts may hold {} MB together, 16 MB in one piece; keep less, and let go (= nil) of what is no longer needed",
+      limits_.memory >> 20u);
+}
+
 std::string Guard::stop_text() const {
-  if (reason_ == Reason::memory) {
-    return fmt::format(
-        "stopped: scripts may hold {} MB together, 16 MB in one piece; keep less, and let go (= nil) of what is no "
-        "longer needed",
-        limits_.memory >> 20u);
-  }
+  if (reason_ == Reason::memory) return "stopped: " + memory_text();
   if (kind_ == Kind::run) {
     return fmt::format("stopped after {:g} s of computing; look for a loop without an end", limits_.run_ms / 1000);
   }
@@ -290,6 +291,10 @@ void Guard::take_fault(int status, int function) {
   fault_.text = text_at_top();
   if (fault_.text.empty()) fault_.text = "an error without text";
   if (fault_.line == 0) place_at_function(function);
+  // what LuaJIT says of one piece that is refused
+  constexpr std::string_view kRefused = "not enough memory";
+  const std::string_view first_line = std::string_view(fault_.text).substr(0, fault_.text.find('\n'));
+  if (first_line.ends_with(kRefused)) fault_.text.insert(first_line.size(), ": " + memory_text());
 }
 
 // A function that ended in a call of ours has left the stack, and LuaJIT tells no place when it finds no room: then it
