@@ -71,7 +71,6 @@ class Guard {
   bool stop_asked() { return running_ && (reason_ != Reason::none || watch_.stop_asked()); }
   std::string_view stop_file() const { return stop_file_; }
   int stop_line() const { return stop_line_; }
-  std::string memory_text() const;
   std::string stop_text() const;
   /// Whether a call was stopped for memory since the last time that this was asked.
   bool take_memory_stop() { return std::exchange(memory_stop_, false); }
@@ -88,6 +87,7 @@ class Guard {
   void stop(Reason reason);
   void heal();
   bool skip_call(int arguments);
+  std::string memory_text() const;
   void take_fault(int status, int function);
   void place_at_function(int function);
   void note_place(lua_State* state);
