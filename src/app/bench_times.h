@@ -5,11 +5,12 @@
 #include <chrono>
 #include <cmath>
 #include <cstddef>
-#include <ctime>
 #include <vector>
 
 #include <malloc.h>
 #include <nlohmann/json.hpp>
+
+#include "base/clock_seconds.h"
 
 namespace limber {
 
@@ -21,13 +22,6 @@ inline double bench_seconds() {
 inline double heap_bytes() {
   const struct mallinfo2 info = mallinfo2();
   return static_cast<double>(info.uordblks) + static_cast<double>(info.hblkhd);
-}
-
-/// Seconds that this thread has had a processor: other programs' turns do not count.
-inline double thread_seconds() {
-  timespec now{};
-  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
-  return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
 }
 
 /// A figure with so many decimals, as many as it deserves.

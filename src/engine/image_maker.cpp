@@ -23,8 +23,8 @@ void ImageMaker::note(const Store& store, const Origin& origin, const Place& pla
 
 bool ImageMaker::make(const Store& store, const std::shared_ptr<const Snapshot>& snapshot, std::uint64_t asks) {
   if (asks == answered_) return false;
-  const double begin = now_();
-  if (begin < next_) return false;
+  if (now_() < next_) return false;
+  const double begin = spent_();
   if (tree_ == nullptr || structure_ != store.structure_version()) {
     tree_ = std::make_shared<const Tree>(store);
     structure_ = store.structure_version();
@@ -40,8 +40,8 @@ bool ImageMaker::make(const Store& store, const std::shared_ptr<const Snapshot>&
   image->notes.clear();
   for (const Noted& n : notes_) image->notes.push_back(n.note);
   out_.publish(image);
-  const double end = now_();
-  next_ = end + (end - begin) * (1 / kShare - 1);
+  const double cost = spent_() - begin;
+  next_ = now_() + cost * (1 / kShare - 1);
   return true;
 }
 

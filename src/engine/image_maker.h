@@ -19,8 +19,10 @@ class ImageMaker {
   static constexpr std::size_t kMostNotes = 4096;
   static constexpr std::uint64_t kNoteLasts = 64;  ///< Images that hold a note.
 
-  /// `now` reads a clock in seconds.
-  explicit ImageMaker(Latest<Image>& out, double (*now)() = &clock_seconds) : out_(out), now_(now) {}
+  /// `now` reads a clock in seconds, `spent` one of what the thread has had of a processor: a program that was
+  /// suspended for an hour while it made an image owes nothing.
+  explicit ImageMaker(Latest<Image>& out, double (*now)() = &clock_seconds, double (*spent)() = &thread_seconds)
+      : out_(out), now_(now), spent_(spent) {}
 
   /// The row was set by this hand, just now. Beyond kMostNotes the oldest are forgotten.
   void note(const Store& store, const Origin& origin, const Place& place, bool clamped);
@@ -35,6 +37,7 @@ class ImageMaker {
 
   Latest<Image>& out_;
   double (*now_)();
+  double (*spent_)();
   std::shared_ptr<const Tree> tree_;
   std::uint64_t structure_ = 0;
   std::uint64_t made_ = 0;

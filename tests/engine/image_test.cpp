@@ -132,13 +132,16 @@ TEST(ImageMaker, TextsAreTold) {
 double turned = 0;
 double turn = 0;
 double turned_clock() { return turned += turn; }
+// by which an image costs 2 ms
+double spent = 0;
+double spent_clock() { return spent += 0.002; }
 
 TEST(ImageMaker, TakesAHundredthOfTheTime) {
   Rig rig;
   Latest<Image> out;
   turned = 0;
-  turn = 0.002;  // an image costs one look: 2 ms
-  ImageMaker maker(out, &turned_clock);
+  turn = 0.002;
+  ImageMaker maker(out, &turned_clock, &spent_clock);
   const auto snapshot = std::make_shared<Snapshot>();
   std::uint64_t made = 0;
   // 10 s of looks: at most every 200 ms
@@ -147,11 +150,25 @@ TEST(ImageMaker, TakesAHundredthOfTheTime) {
   EXPECT_LE(made, 51u);
 }
 
+TEST(ImageMaker, ASuspendedProgramOwesNothing) {
+  Rig rig;
+  Latest<Image> out;
+  ImageMaker maker(out, &turned_clock, &spent_clock);
+  const auto snapshot = std::make_shared<Snapshot>();
+  turned = 0;
+  turn = 1000;  // so long the first image takes
+  ASSERT_TRUE(maker.make(rig.store, snapshot, 1));
+  turn = 0.002;
+  int looks = 1;
+  while (looks < 1000 && !maker.make(rig.store, snapshot, 2)) looks++;
+  EXPECT_NEAR(looks, 99, 1) << "the next one is due after 198 ms";
+}
+
 TEST(ImageMaker, NotesAreNewestLastAndDoNotStayForEver) {
   Rig rig;
   Latest<Image> out;
   turn = 0;
-  ImageMaker maker(out, &turned_clock);
+  ImageMaker maker(out, &turned_clock, &turned_clock);
   const auto snapshot = std::make_shared<Snapshot>();
   const Origin one{Hand::osc, 1, 1, true};
   const Place friction = *find_place(rig.store, "/physics/body/arm/part/tip/friction");
