@@ -19,6 +19,8 @@ constexpr std::size_t kAhead = 8;
 constexpr std::size_t kLeafAhead = 4;
 /// Of those whose neighbours are looked for, so many at a time; it changes no result.
 constexpr int kSearched = 16;
+/// So many that came one after the other are in one tree: they are mostly near each other.
+constexpr int kInTree = 256;
 
 }  // namespace
 
@@ -28,6 +30,7 @@ struct Broadphase::Proxy : btBroadphaseProxy {
   btDbvtNode* leaf = nullptr;  // null: a plane
   btDbvtVolume box{};          // the leaf's: which would be another place in memory
   bool moves = false;
+  int tree = 0;               // of those of what moves
   bool anew = false;          // who may collide with it has changed
   bool near = false;          // something was found around it lately
   int marked = 0;             // place in marked_, from 1 on; 0: none
@@ -99,9 +102,16 @@ bool may_collide(const btBroadphaseProxy& a, const btBroadphaseProxy& b) {
 }  // namespace
 
 Broadphase::Broadphase(double margin, Team* team)
-    : margin_(to_scalar(margin)), team_(team), searches_(std::make_unique<std::vector<Search>>()) {}
+    : margin_(to_scalar(margin)),
+      team_(team),
+      trees_(team == nullptr ? 1 : std::min(team->members(), kMostTrees)),
+      searches_(std::make_unique<std::vector<Search>>()) {}
 
 Broadphase::~Broadphase() = default;
+
+btDbvt& Broadphase::tree_of(const Proxy& proxy) {
+  return proxy.moves ? moving_[static_cast<std::size_t>(proxy.tree)] : standing_;
+}
 
 void Broadphase::mark(Proxy& proxy) {
   if (proxy.marked != 0) return;
@@ -121,7 +131,8 @@ btBroadphaseProxy* Broadphase::createProxy(const btVector3& low, const btVector3
     proxy->moves = !of.isStaticObject();
     proxy->reach = of.getCollisionShape()->getContactBreakingThreshold(gContactBreakingThreshold);
     proxy->box = btDbvtVolume::FromMM(low, high);
-    proxy->leaf = (proxy->moves ? moving_ : standing_).insert(proxy->box, proxy);
+    if (proxy->moves) proxy->tree = last_id_ / kInTree % trees_;
+    proxy->leaf = tree_of(*proxy).insert(proxy->box, proxy);
   }
   mark(*proxy);
   make_room(++count_);
@@ -140,7 +151,10 @@ void Broadphase::destroyProxy(btBroadphaseProxy* of, btDispatcher* dispatcher) {
   if (proxy->leaf == nullptr) {
     planes_.remove(proxy);
   } else {
-    (proxy->moves ? moving_ : standing_).remove(proxy->leaf);
+    btDbvt& tree = tree_of(*proxy);
+    tree.remove(proxy->leaf);
+    // the node that a tree keeps for later: without it a leaf that is moved frees nothing, which a team's member can't
+    btAlignedFree(std::exchange(tree.m_free, nullptr));
   }
   delete proxy;
   --count_;
@@ -173,15 +187,21 @@ void Broadphase::fetch(const btCollisionObject& object) { prefetch(object.getBro
 void Broadphase::leave(std::span<btBroadphaseProxy* const> proxies) {
   for (std::size_t i = 0; i < proxies.size(); i++) {
     if (i + kAhead < proxies.size()) prefetch(proxies[i + kAhead], sizeof(Proxy));
-    if (i + kLeafAhead < proxies.size()) {
-      prefetch(static_cast<const Proxy*>(proxies[i + kLeafAhead])->leaf, sizeof(btDbvtNode));
-    }
-    move(*static_cast<Proxy*>(proxies[i]));
+    mark(*static_cast<Proxy*>(proxies[i]));
   }
+  share_out(team_, trees_, [&](int tree, int) {
+    for (std::size_t i = 0; i < proxies.size(); i++) {
+      if (i + kAhead < proxies.size()) prefetch(proxies[i + kAhead], sizeof(Proxy));
+      if (i + kLeafAhead < proxies.size()) {
+        prefetch(static_cast<const Proxy*>(proxies[i + kLeafAhead])->leaf, sizeof(btDbvtNode));
+      }
+      Proxy& proxy = *static_cast<Proxy*>(proxies[i]);
+      if (proxy.tree == tree) move(proxy);
+    }
+  });
 }
 
 void Broadphase::move(Proxy& proxy) {
-  mark(proxy);
   if (proxy.leaf == nullptr) return;
   btDbvtVolume box = btDbvtVolume::FromMM(proxy.m_aabbMin, proxy.m_aabbMax);
   if (proxy.moves) {
@@ -189,16 +209,15 @@ void Broadphase::move(Proxy& proxy) {
     box.Expand(btVector3(margin_, margin_, margin_));
     const btVector3 left = size - proxy.way.absolute();
     if (!proxy.near && left[left.minAxis()] >= 0) box.SignedExpand(proxy.way * kStepsAhead);
-    moving_.update(proxy.leaf, box);
-  } else {
-    standing_.update(proxy.leaf, box);
   }
+  tree_of(proxy).update(proxy.leaf, box);
   proxy.box = box;
 }
 
 void Broadphase::setAabb(btBroadphaseProxy* proxy, const btVector3& low, const btVector3& high, btDispatcher*) {
   proxy->m_aabbMin = low;
   proxy->m_aabbMax = high;
+  mark(*static_cast<Proxy*>(proxy));
   move(*static_cast<Proxy*>(proxy));
 }
 
@@ -214,13 +233,15 @@ void Broadphase::search_around(Proxy& proxy, Search& search) const {
     if (may_collide(proxy, other)) search.found.emplace_back(&proxy, &other);
   };
   if (proxy.leaf == nullptr) {
-    if (moving_.m_root == nullptr) return;
-    meet<Proxy>(moving_, moving_.m_root->volume, search.stack, [&](Proxy& other) {
-      if (proxy.reaches(other)) found(other);
-    });
+    for (const btDbvt& tree : moving_) {
+      if (tree.m_root == nullptr) continue;
+      meet<Proxy>(tree, tree.m_root->volume, search.stack, [&](Proxy& other) {
+        if (proxy.reaches(other)) found(other);
+      });
+    }
     return;
   }
-  meet<Proxy>(moving_, proxy.box, search.stack, found);
+  for (const btDbvt& tree : moving_) meet<Proxy>(tree, proxy.box, search.stack, found);
   if (!proxy.moves) return;
   meet<Proxy>(standing_, proxy.box, search.stack, found);
   for (int i = 0; i < planes_.size(); i++) {
@@ -250,7 +271,7 @@ void Broadphase::forget_parted(btDispatcher* dispatcher) {
 }
 
 void Broadphase::calculateOverlappingPairs(btDispatcher* dispatcher) {
-  moving_.optimizeIncremental(1);
+  for (btDbvt& tree : moving_) tree.optimizeIncremental(1);
   if (marked_.size() == 0) return;
   forget_parted(dispatcher);
   make_room(marked_.size());
@@ -277,7 +298,7 @@ void Broadphase::aabbTest(const btVector3& low, const btVector3& high, btBroadph
   const btDbvtVolume box = btDbvtVolume::FromMM(low, high);
   const auto found = [&](Proxy& proxy) { callback.process(&proxy); };
   std::vector<const btDbvtNode*> stack;
-  meet<Proxy>(moving_, box, stack, found);
+  for (const btDbvt& tree : moving_) meet<Proxy>(tree, box, stack, found);
   meet<Proxy>(standing_, box, stack, found);
   for (int i = 0; i < planes_.size(); i++) callback.process(planes_[i]);
 }
@@ -295,9 +316,9 @@ void Broadphase::getBroadphaseAabb(btVector3& low, btVector3& high) const {
   low.setZero();
   high.setZero();
   bool first = true;
-  for (const btDbvt* tree : {&moving_, &standing_}) {
-    if (tree->m_root == nullptr) continue;
-    const btDbvtVolume& box = tree->m_root->volume;
+  const auto reach = [&](const btDbvt& tree) {
+    if (tree.m_root == nullptr) return;
+    const btDbvtVolume& box = tree.m_root->volume;
     if (std::exchange(first, false)) {
       low = box.Mins();
       high = box.Maxs();
@@ -305,7 +326,9 @@ void Broadphase::getBroadphaseAabb(btVector3& low, btVector3& high) const {
       low.setMin(box.Mins());
       high.setMax(box.Maxs());
     }
-  }
+  };
+  reach(standing_);
+  for (const btDbvt& tree : moving_) reach(tree);
 }
 
 }  // namespace limber

@@ -1,6 +1,7 @@
 // Broadphase: which objects come so near to each other that contacts are looked for.
 #pragma once
 
+#include <array>
 #include <memory>
 #include <span>
 #include <vector>
@@ -13,18 +14,19 @@
 
 namespace limber {
 
-/// Bullet's trees of bounding boxes, one for what moves and one for what stands, and Bullet's table of pairs. Only
-/// pairs that may collide are in the table: neither objects of one group, nor those that a joint keeps from colliding.
-/// A plane is in no tree, since its box is everything: it meets what comes as near to it as a contact can begin. Pairs
-/// are found once a step, in calculateOverlappingPairs, around what left its box or was looked at anew. All that it
-/// remembers lies in the memory of the BulletMemory::Scope that it is used in. [sim]
+/// Bullet's trees of bounding boxes, one for what stands and one or, with a team, some for what moves, and Bullet's
+/// table of pairs. Which boxes meet does not depend on the trees. Only pairs that may collide are in the table: neither
+/// objects of one group, nor those that a joint keeps from colliding. A plane is in no tree, since its box is
+/// everything: it meets what comes as near to it as a contact can begin. Pairs are found once a step, in
+/// calculateOverlappingPairs, around what left its box or was looked at anew. All that it remembers lies in the memory
+/// of the BulletMemory::Scope that it is used in. [sim]
 class Broadphase : public btBroadphaseInterface {
  public:
   BT_DECLARE_ALIGNED_ALLOCATOR();
 
   /// Metres that the boxes of what moves are larger: so far it moves before its neighbours are looked for again;
   /// those of what is alone reach ahead of it besides.
-  /// `team`, which may be null, looks for pairs side by side.
+  /// `team`, which may be null, looks for pairs side by side, and moves boxes: each member those of a tree.
   Broadphase(double margin, Team* team);
   ~Broadphase() override;
   Broadphase(const Broadphase&) = delete;
@@ -62,8 +64,11 @@ class Broadphase : public btBroadphaseInterface {
  private:
   struct Proxy;
 
+  static constexpr int kMostTrees = 8;
+
   struct Search;  // what is found around some of those that are marked
 
+  btDbvt& tree_of(const Proxy& proxy);
   void move(Proxy& proxy);
   void make_room(int marked);
   void mark(Proxy& proxy);
@@ -72,7 +77,7 @@ class Broadphase : public btBroadphaseInterface {
   void forget_parted(btDispatcher* dispatcher);
 
   btScalar margin_;
-  btDbvt moving_;
+  std::array<btDbvt, kMostTrees> moving_;  // the first trees_ of them
   btDbvt standing_;
   btAlignedObjectArray<Proxy*> planes_;
   btAlignedObjectArray<Proxy*> marked_;  // whose neighbours are to be looked for; null: gone since
@@ -80,6 +85,7 @@ class Broadphase : public btBroadphaseInterface {
   int last_id_ = 0;
   int count_ = 0;
   Team* team_;
+  int trees_;
   // on the heap, and nothing that outlives a step
   std::unique_ptr<std::vector<Search>> searches_;
 };
