@@ -49,9 +49,9 @@ struct ArmSide {
     for (int i = 0; i < count; i++) {
       loop.drive(time);
       const double work_start = thread_seconds();
-      const double start = bench_seconds();
+      const double start = clock_seconds();
       loop.tick();
-      ticks.add(bench_seconds() - start);
+      ticks.add(clock_seconds() - start);
       work.add(thread_seconds() - work_start);
       if (after) after();
       time += scene.step * scene.substeps;

@@ -4,6 +4,7 @@
 #include <netinet/in.h>
 #include <poll.h>
 #include <sys/socket.h>
+#include <chrono>
 
 #include <array>
 #include <atomic>
@@ -67,9 +68,9 @@ double messages_per_second(BenchArms& arms, const std::vector<Packet>& packets, 
   Receiver receiver(arms.link(), {}, {}, clock);
   double best = 0;
   for (int round = 0; round < 12; round++) {
-    const double start = bench_seconds();
+    const double start = clock_seconds();
     for (const Packet& packet : packets) receiver.take(packet.data(), packet.size(), {0x7f000001, 9});
-    double seconds = bench_seconds() - start;
+    double seconds = clock_seconds() - start;
     // a tick takes so much of them
     for (int work = 0; work < 2 * messages; work += Engine::kTickWork) {
       arms.tick();
@@ -113,17 +114,17 @@ Json burst(BenchArms& arms, Network& network, const std::vector<Packet>& packets
   const auto arrived = [&] { return counters.received.load(); };
   const std::uint64_t before = arrived();
   Client client(network.bound().front().port);
-  const double start = bench_seconds();
+  const double start = clock_seconds();
   std::thread sender([&] {
     for (const Packet& packet : packets) client.send(packet);
   });
   // until nothing has come for a while
   double last = start;
-  for (std::uint64_t seen = before; seen < before + packets.size() && bench_seconds() - last < 0.5;) {
+  for (std::uint64_t seen = before; seen < before + packets.size() && clock_seconds() - last < 0.5;) {
     arms.tick();
     if (arrived() == seen) continue;
     seen = arrived();
-    last = bench_seconds();
+    last = clock_seconds();
   }
   sender.join();
   arms.tick();
@@ -161,10 +162,10 @@ nlohmann::ordered_json bench_osc_latency(const BenchOptions&) {
   int lost = 0;
   Samples pings, values;
   const auto ask = [&](const Packet& packet, Samples& times) {
-    const double start = bench_seconds();
+    const double start = clock_seconds();
     client.send(packet);
     if (client.receive()) {
-      times.add(bench_seconds() - start);
+      times.add(clock_seconds() - start);
     } else {
       lost++;
     }

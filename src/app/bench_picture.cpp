@@ -73,7 +73,7 @@ Json draw(const PictureScene& scene, int warm, int frames) {
     const double mix = 1.0 * (i % kFramesATick) / kFramesATick;
     if (i == warm) {
       (*renderer)->finish();
-      begin = bench_seconds();
+      begin = clock_seconds();
     }
     const double begin_own = thread_seconds();
     const Result<void> drawn = (*renderer)->draw(before, now, mix, scene.width, scene.height);
@@ -81,7 +81,7 @@ Json draw(const PictureScene& scene, int warm, int frames) {
     if (i >= warm) own.add(thread_seconds() - begin_own);
   }
   (*renderer)->finish();
-  const double a_frame = (bench_seconds() - begin) / frames;
+  const double a_frame = (clock_seconds() - begin) / frames;
   return {{"quality", scene.quality_name},
           {"size", fmt::format("{} x {}", scene.width, scene.height)},
           {"parts", scene.arms * 17},

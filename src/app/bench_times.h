@@ -2,7 +2,6 @@
 #pragma once
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <cstddef>
 #include <vector>
@@ -13,10 +12,6 @@
 #include "base/clock_seconds.h"
 
 namespace limber {
-
-inline double bench_seconds() {
-  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
-}
 
 /// Bytes that the program holds on its heap. [any]
 inline double heap_bytes() {
