@@ -153,7 +153,7 @@ void Broadphase::destroyProxy(btBroadphaseProxy* of, btDispatcher* dispatcher) {
   } else {
     btDbvt& tree = tree_of(*proxy);
     tree.remove(proxy->leaf);
-    // the node that a tree keeps for later: without it a leaf that is moved frees nothing, which a team's member can't
+    // the node that a tree keeps for later, and would free when a leaf is moved: a team's members must free nothing
     btAlignedFree(std::exchange(tree.m_free, nullptr));
   }
   delete proxy;
