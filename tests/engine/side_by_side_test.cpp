@@ -20,21 +20,44 @@ for i = 0, 59 do
 end
 )";
 
-std::uint64_t hash_with(int threads, const char* solver) {
-  const SceneFile file("local ROOT = \"" LIMBER_SOURCE_DIR "\"\n" + std::string(kCrowd) + "sim.solver = \"" + solver +
-                       "\"\n");
+// as many drops as need several trees of boxes, which all are left in each step; each step takes one from either end
+constexpr const char* kRain = R"(
+local box = sim:add_box_shape("box", vec3(0.1, 0.1, 0.1))
+for i = 1, 400 do
+  sim:add_body("drop" .. i):add_part("p", box, { position = vec3(i % 20, math.floor(i / 20), 0) })
+end
+local gone = 0
+sim:on_step(function()
+  gone = gone + 1
+  sim:body("drop" .. gone):remove()
+  sim:body("drop" .. 401 - gone):remove()
+end)
+)";
+
+std::uint64_t hash_with(int threads, const std::string& scene, int ticks, std::size_t bodies) {
+  const SceneFile file(scene);
   EngineOptions options = fast_options(file.path());
   options.threads = threads;
   Show show(options);
-  show.ticks(150);
+  show.ticks(ticks);
+  EXPECT_EQ(show.engine.world().bodies().size(), bodies);
   return show.engine.state_hash();
 }
 
 TEST(SideBySide, AnyNumberOfThemComesToTheSameState) {
-  for (const char* solver : {"iterative", "direct"}) {
-    const std::uint64_t alone = hash_with(1, solver);
-    for (const int threads : {2, 3, 8}) EXPECT_EQ(hash_with(threads, solver), alone) << solver << " " << threads;
+  for (const std::string solver : {"iterative", "direct"}) {
+    const std::string scene =
+        "local ROOT = \"" LIMBER_SOURCE_DIR "\"\n" + std::string(kCrowd) + "sim.solver = \"" + solver + "\"\n";
+    const std::uint64_t alone = hash_with(1, scene, 150, 73);
+    for (const int threads : {2, 3, 8})
+      EXPECT_EQ(hash_with(threads, scene, 150, 73), alone) << solver << " " << threads;
   }
+}
+
+TEST(SideBySide, SoDoManyThatComeAndGo) {
+  const std::uint64_t alone = hash_with(1, kRain, 60, 280);
+  EXPECT_NE(alone, hash_with(1, kRain, 59, 282));
+  for (const int threads : {2, 3}) EXPECT_EQ(hash_with(threads, kRain, 60, 280), alone) << threads;
 }
 
 }  // namespace
