@@ -37,33 +37,33 @@ Vec3 any_normal(const Vec3& v) {
 bool motion_axes(const JointConstraint& joint, const Vec3& arm, double sign, std::array<Spatial, 6>& out) {
   unsigned used = 0;
   for (const JointConstraint::Row& row : joint.planned()) used |= 1u << row.axis;
-  Vec3 dual[3];
+  std::array<Vec3, 3> dual{Vec3(0), Vec3(0), Vec3(0)};
   int known = 0;
   for (int i = 0; i < 3; ++i) {
     if ((used >> (3 + i) & 1) == 0) continue;
-    dual[i] = from_bt(joint.dual_axis(i));
+    dual[at(i)] = from_bt(joint.dual_axis(i));
     known++;
   }
   for (int i = 0; i < 3; ++i) {
     if ((used >> (3 + i) & 1) != 0) continue;
-    Vec3& a = dual[(i + 1) % 3];
-    Vec3& b = dual[(i + 2) % 3];
+    Vec3& a = dual[at((i + 1) % 3)];
+    Vec3& b = dual[at((i + 2) % 3)];
     if (known == 0) {
-      dual[i][i] = 1;
+      dual[at(i)][i] = 1;
     } else if (known == 1) {
       const bool first = (used >> (3 + (i + 1) % 3) & 1) != 0;
-      dual[i] = any_normal(first ? a : b);
-      (first ? b : a) = normalized(glm::cross(first ? a : b, dual[i]));
+      dual[at(i)] = any_normal(first ? a : b);
+      (first ? b : a) = normalized(glm::cross(first ? a : b, dual[at(i)]));
       break;
     } else {
-      dual[i] = normalized(glm::cross(a, b));
+      dual[at(i)] = normalized(glm::cross(a, b));
     }
   }
   const double volume = glm::dot(dual[0], glm::cross(dual[1], dual[2]));
   const double sizes = glm::length(dual[0]) * glm::length(dual[1]) * glm::length(dual[2]);
   if (!(std::fabs(volume) > 1e-3 * sizes)) return false;
   for (int i = 0; i < 3; ++i) {
-    const Vec3 e = glm::cross(dual[(i + 1) % 3], dual[(i + 2) % 3]) * (sign / volume);
+    const Vec3 e = glm::cross(dual[at((i + 1) % 3)], dual[at((i + 2) % 3)]) * (sign / volume);
     out[at(i)] = {from_bt(joint.linear_axis(i)) * sign, Vec3(0)};
     out[at(3 + i)] = {glm::cross(arm, e), e};
   }
