@@ -75,7 +75,7 @@ class Limber:
 
     def get(self, path):
         self.send("/get", path)
-        for address, args in self.receive():
+        for address, args in self.receive(10):
             if address == "/error":
                 raise LookupError(args[1])
             return args
@@ -92,7 +92,7 @@ def main():
 
     print("gravity is", limber.get("/physics/sim/gravity"))
     limber.send("/list/bodies")
-    bodies = limber.receive()[0][1]
+    bodies = limber.receive(10)[0][1]
     print("bodies:", " ".join(bodies))
     limber.send("/physics/sim/gravity", -3.0)
 

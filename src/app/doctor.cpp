@@ -3,9 +3,11 @@
 
 #include <cstdlib>
 #include <fstream>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <thread>
+#include <vector>
 
 #include <fmt/format.h>
 #include <sys/utsname.h>
@@ -13,6 +15,7 @@
 
 #include "app/exit_code.h"
 #include "app/paths.h"
+#include "app/query_doors.h"
 #include "app/window.h"
 #include "base/build_info.h"
 #include "base/text.h"
@@ -47,21 +50,24 @@ long number_in(const char* path) {
   return number;
 }
 
-bool check_ports() {
+bool check_ports(const std::vector<ListenAddress>& osc_in, const std::optional<ListenAddress>& query_at) {
   EngineLink link;
-  Network network(link, OscOptions{}, live_offsets());
+  Network network(link, OscOptions{.in = osc_in, .out = std::vector<StreamTarget>(), .allow = {}}, live_offsets());
   const Result<void> open = network.start();
   network.stop();
   if (open) {
-    finding("ok", "ports", "OSC in 127.0.0.1:9003 is free");
+    for (const ListenAddress& at : osc_in)
+      finding("ok", "ports", fmt::format("OSC in {}:{} is free", at.address, at.port));
   } else {
     finding("no", "ports", open.error());
   }
+  if (!query_at) return open.ok();
   QueryServer query(link, {});
-  const Result<void> panel = query.start(ListenAddress{});
+  const Result<void> panel = query.start(*query_at);
   query.stop();
   if (panel) {
-    finding("ok", "ports", "OSCQuery and remote panel 127.0.0.1:9003 (TCP) is free");
+    finding("ok", "ports",
+            fmt::format("OSCQuery and remote panel {}:{} (TCP) is free", query_at->address, query_at->port));
   } else {
     finding("no", "ports", panel.error());
   }
@@ -94,7 +100,12 @@ void check_drawing() {
 
 }  // namespace
 
-int doctor_command() {
+int doctor_command(const DoctorCommand& command) {
+  const Result<std::vector<ListenAddress>> osc_in = parse_osc_in(command.osc_in);
+  if (!osc_in) return fail(kUsage, osc_in.error());
+  const Result<std::optional<std::vector<ListenAddress>>> query = parse_query(command.query);
+  if (!query) return fail(kUsage, query.error());
+
   utsname machine{};
   uname(&machine);
   finding("ok", "limber", fmt::format("{} ({})", version(), commit()));
@@ -109,7 +120,7 @@ int doctor_command() {
   } else {
     finding("ok", "data", data);
   }
-  const bool ports = check_ports();
+  const bool ports = check_ports(*osc_in, query_address(*query, OscPlan{.listen = *osc_in, .targets = {}}));
 
   const long buffer = number_in("/proc/sys/net/core/rmem_max");
   constexpr long kWanted = 4194304;

@@ -184,6 +184,7 @@ struct CommandLine {
   PresetCommand preset;
   TakeCommand take;
   ExportCommand exported;
+  DoctorCommand doctor;
   bool json = false;
   bool markdown = false;
   std::vector<std::string> package_paths;
@@ -242,6 +243,15 @@ void add_monitor(CLI::App& app, MonitorCommand& command) {
   monitor->add_flag("--out", command.only_out, "only what goes out")->excludes(in);
   monitor->add_option("--pid", command.pid, "which program, when several play")->type_name("PID");
   monitor->add_option("--count", command.count, "end after so many lines")->type_name("N")->check(whole_number());
+}
+
+void add_doctor(CLI::App& app, DoctorCommand& command) {
+  CLI::App* doctor = app.add_subcommand("doctor", "what works on this machine: ports, buffers, data");
+  doctor->add_option("--osc-in", command.osc_in, "where OSC would come in; default 127.0.0.1:9003")
+      ->type_name("[ADDR:]PORT|off");
+  doctor
+      ->add_option("--query", command.query, "where OSCQuery and the remote panel would be; default: as --osc-in, TCP")
+      ->type_name("[ADDR:]PORT|off");
 }
 
 void add_send(CLI::App& app, SendCommand& command) {
@@ -373,7 +383,7 @@ int run_command_line(int argc, char** argv) {
   add_export(app, line.exported);
   CLI::App* annotate = app.add_subcommand("annotate", "definitions of all that scripts see, for editors (LuaCATS)");
   annotate->add_option("file", line.definitions, "where they go; left out: stdout")->type_name("FILE");
-  app.add_subcommand("doctor", "what works on this machine: ports, buffers, data");
+  add_doctor(app, line.doctor);
 
   if (const auto mistyped = mistyped_command(argc, argv)) {
     fmt::print(stderr, "limber: {}\n", *mistyped);
@@ -404,7 +414,7 @@ int run_command_line(int argc, char** argv) {
   if (command == "export") return export_command(line.exported);
   if (command == "annotate") return annotate_command(line.definitions);
   if (command == "bench") return bench_command(line.bench);
-  if (command == "doctor") return doctor_command();
+  if (command == "doctor") return doctor_command(line.doctor);
   return play_command(line.play);
 }
 

@@ -93,8 +93,9 @@ TEST(Console, AShowWithoutAFolderForItPlaysOn) {
   std::filesystem::permissions(runtime.path(), std::filesystem::perms::all);
   std::ofstream(runtime / ("limber-" + std::to_string(geteuid()))) << "no folder";
   const Folder folder;
-  Running running(limber({"play", folder.file("s.lua", kApple), "--osc-in", "off", "--osc-out", "off"},
-                         {"env", "XDG_RUNTIME_DIR=" + runtime.path(), "TMPDIR=" + runtime.path()}));
+  Running running(
+      limber({"play", folder.file("s.lua", kApple), "--osc-in", "off", "--osc-out", "off", "--query", "off"},
+             {"env", "XDG_RUNTIME_DIR=" + runtime.path(), "TMPDIR=" + runtime.path()}));
   EXPECT_TRUE(running.wait_for("playing headless"));
   EXPECT_NE(running.err().find("limber: warning: there is no console: the folder " + runtime.path()), std::string::npos)
       << running.err();

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "app/program.h"
+#include "app/taken_port.h"
 
 namespace limber::app_test {
 
@@ -40,10 +41,12 @@ inline std::vector<std::vector<std::string>> surroundings() {
 
 /// Ways to play that must change nothing: as fast as can be, in time with the clock, with streams.
 inline std::vector<std::vector<std::string>> ways_to_play() {
+  static const TakenPort sink(SOCK_DGRAM);
+  const std::string streams = "127.0.0.1:" + sink.number() + ",rate=1000";
   return {{"--fast"},
-          {"--osc-in", "off", "--osc-out", "off", "--set", "/physics/sim/speed=100"},
-          {"--fast", "--osc-in", "127.0.0.1:0", "--osc-out", "127.0.0.1:9,rate=1000"},
-          {"--osc-in", "127.0.0.1:0", "--osc-out", "127.0.0.1:9,rate=1000", "--set", "/physics/sim/speed=50"}};
+          {"--osc-in", "off", "--osc-out", "off", "--query", "off", "--set", "/physics/sim/speed=100"},
+          {"--fast", "--osc-in", "127.0.0.1:0", "--osc-out", streams},
+          {"--osc-in", "127.0.0.1:0", "--osc-out", streams, "--set", "/physics/sim/speed=50"}};
 }
 
 /// "hash … tick …" of one run, or what went wrong.

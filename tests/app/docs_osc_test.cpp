@@ -181,14 +181,21 @@ struct PagePlayer {
 TEST(DocsOsc, ThePythonProgramPlaysAndReads) {
   PagePlayer player;
   const std::string file = LIMBER_SOURCE_DIR "/docs/examples/limber.py";
-  const Ran ran = Running({"python3", "-B", file, "--port", player.in, "--seconds", "0.5"}).finish();
-  EXPECT_EQ(ran.code, 0) << ran.err;
+  Ran ran;
+  int frames = 0;
+  // on a busy machine none may come in half a second
+  for (const char* seconds : {"0.5", "5", "50"}) {
+    ran = Running({"python3", "-B", file, "--port", player.in, "--seconds", seconds}).finish();
+    EXPECT_EQ(ran.code, 0) << ran.err;
+    const std::size_t at = ran.out.find("frames: ");
+    ASSERT_NE(at, std::string::npos) << ran.out;
+    frames = std::stoi(ran.out.substr(at + 8));
+    if (frames > 0) break;
+  }
+  EXPECT_GT(frames, 0);
   EXPECT_NE(ran.out.find("gravity is [0.0, 0.0, -9.8"), std::string::npos) << ran.out;
   EXPECT_NE(ran.out.find("bodies: arm1 arm2\n"), std::string::npos) << ran.out;
   EXPECT_EQ(ran.out.find("/physics/"), std::string::npos) << "nothing was refused: " << ran.out;
-  const std::size_t at = ran.out.find("frames: ");
-  ASSERT_NE(at, std::string::npos) << ran.out;
-  EXPECT_GT(std::stoi(ran.out.substr(at + 8)), 0);
 }
 
 TEST(DocsOsc, ThePdPatchPlaysAndIsAnswered) {
@@ -218,7 +225,7 @@ TEST(DocsOsc, ThePdPatchOfPresetsStoresRecallsAndGlides) {
     return run({"send", "/get", path, "--to", "127.0.0.1:" + player.in, "--wait", "30"}).out;
   };
   const auto set_speed = [&](const char* speed) {
-    EXPECT_EQ(run({"send", "/scene/speed", speed, "--to", "127.0.0.1:" + player.in}).code, 0);
+    EXPECT_EQ(run({"send", "/scene/speed", speed, "--to", "127.0.0.1:" + player.in, "--wait", "60"}).code, 0);
   };
   play({"store symbol dusk"}, "dusk");
   set_speed("0.52");

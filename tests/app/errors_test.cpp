@@ -1,14 +1,12 @@
 // Every refusal of the program: tests/errors.tsv lists its input, exact text, exit code and cure; this walks it, and
 // looks through the sources for a refusal that is not in it.
-#include <netinet/in.h>
-#include <sys/socket.h>
-
 #include <algorithm>
 #include <iterator>
 #include <regex>
 #include <sstream>
 
 #include "app/program.h"
+#include "app/taken_port.h"
 
 namespace limber::app_test {
 namespace {
@@ -52,29 +50,6 @@ std::vector<Refusal> refusals() {
   }
   return list;
 }
-
-// a port of this machine, of UDP or TCP, that somebody holds
-class TakenPort {
- public:
-  explicit TakenPort(int kind) : fd_(socket(AF_INET, kind | SOCK_CLOEXEC, 0)) {
-    sockaddr_in at{};
-    at.sin_family = AF_INET;
-    at.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
-    socklen_t size = sizeof at;
-    if (bind(fd_, reinterpret_cast<const sockaddr*>(&at), size) == 0)
-      getsockname(fd_, reinterpret_cast<sockaddr*>(&at), &size);
-    if (kind == SOCK_STREAM) listen(fd_, 1);
-    number_ = ntohs(at.sin_port);
-  }
-  ~TakenPort() { close(fd_); }
-  TakenPort(const TakenPort&) = delete;
-  TakenPort& operator=(const TakenPort&) = delete;
-  std::string number() const { return std::to_string(number_); }
-
- private:
-  int fd_;
-  std::uint16_t number_ = 0;
-};
 
 // the files that inputs name as <dir>/…
 void write_inputs(const Folder& folder) {

@@ -1,5 +1,8 @@
 // `limber monitor` and `limber send` beside a program that plays.
+#include <algorithm>
+
 #include "app/playing.h"
+#include "app/taken_port.h"
 
 namespace limber::app_test {
 namespace {
@@ -28,6 +31,7 @@ struct WatchedStage {
   }
   Ran send(std::vector<std::string> words) const {
     words.insert(words.begin(), "send");
+    if (std::ranges::find(words, "--wait") == words.end()) words.insert(words.end(), {"--wait", "60"});
     words.insert(words.end(), {"--to", in});
     return run(std::move(words));
   }
@@ -64,11 +68,11 @@ TEST(Send, SaysWhatWasWrong) {
   EXPECT_EQ(no_address.code, 2);
   EXPECT_NE(no_address.err.find("must begin with /"), std::string::npos);
   EXPECT_EQ(run({"send", "/a", "--to", "127.0.0.1:70000"}).code, 2);
-  // nobody listens on the discard port
-  const Ran nobody = run({"send", "/a", "--to", "127.0.0.1:9", "--wait", "0.2"});
+  const TakenPort deaf(SOCK_DGRAM);  // it never answers
+  const Ran nobody = run({"send", "/a", "--to", deaf.number(), "--wait", "0.2"});
   EXPECT_EQ(nobody.code, 3);
-  EXPECT_NE(nobody.err.find("nobody answers at 127.0.0.1:9"), std::string::npos) << nobody.err;
-  EXPECT_EQ(run({"send", "/a", "--to", "127.0.0.1:9", "--wait", "0"}).code, 0);
+  EXPECT_NE(nobody.err.find("nobody answers at " + deaf.number()), std::string::npos) << nobody.err;
+  EXPECT_EQ(run({"send", "/a", "--to", deaf.number(), "--wait", "0"}).code, 0);
 }
 
 TEST(Monitor, PrintsWhatComesInAndGoesOut) {
@@ -85,13 +89,14 @@ TEST(Monitor, PrintsWhatComesInAndGoesOut) {
 }
 
 TEST(Monitor, FiltersByPatternAndWay) {
-  const WatchedStage stage("127.0.0.1:9");
+  const TakenPort sink(SOCK_DGRAM);
+  const WatchedStage stage("127.0.0.1:" + sink.number());
   Running streams(stage.monitor({"/physics/joint/*", "--out", "--count", "3"}));
   const Ran ran = streams.finish();
   EXPECT_EQ(ran.code, 0);
   for (const char* stream : {"/physics/joint/pos arm ", "/physics/joint/rot arm ", "/physics/joint/relrot arm "})
     EXPECT_NE(ran.out.find(stream), std::string::npos) << ran.out;
-  EXPECT_NE(ran.out.find("> 127.0.0.1:9 "), std::string::npos) << ran.out;
+  EXPECT_NE(ran.out.find("> 127.0.0.1:" + sink.number() + " "), std::string::npos) << ran.out;
   Running in(stage.monitor({"--in", "--count", "1"}));
   ASSERT_TRUE(in.wait_for("watching what goes in"));
   stage.send({"/hello", "x", "--wait", "0"});

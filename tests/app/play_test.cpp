@@ -1,5 +1,6 @@
 // Playing: the first line, what goes to stdout, ending by time, by Ctrl+C and by a fault.
 #include "app/program.h"
+#include "app/taken_port.h"
 
 namespace limber::app_test {
 namespace {
@@ -102,9 +103,11 @@ TEST(Play, FastOpensNoPortsUnlessAsked) {
   const std::string scene = folder.file("s.lua", kBall);
   const Ran quiet = run({scene, "--fast", "--ticks", "1"});
   EXPECT_NE(quiet.err.find("OSC in off\nlimber: OSC out off\nlimber: OSCQuery off\n"), std::string::npos) << quiet.err;
-  const Ran asked = run({scene, "--fast", "--ticks", "1", "--osc-in", "127.0.0.1:0", "--osc-out", "127.0.0.1:9"});
+  const TakenPort sink(SOCK_DGRAM);
+  const std::string out = "127.0.0.1:" + sink.number();
+  const Ran asked = run({scene, "--fast", "--ticks", "1", "--osc-in", "127.0.0.1:0", "--osc-out", out});
   EXPECT_NE(asked.err.find("OSC in 127.0.0.1:"), std::string::npos) << asked.err;
-  EXPECT_NE(asked.err.find("OSC out 127.0.0.1:9 (pos+rot+relrot at 60 Hz)"), std::string::npos) << asked.err;
+  EXPECT_NE(asked.err.find("OSC out " + out + " (pos+rot+relrot at 60 Hz)"), std::string::npos) << asked.err;
 }
 
 }  // namespace

@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "app/program.h"
+#include "app/taken_port.h"
 #include "osc/osc_test_tools.h"
 #include "query/web_client.h"
 
@@ -148,17 +149,17 @@ TEST(Query, ThePageIsWholeAndAsksNobodyElse) {
   EXPECT_LT(page.body.size(), 100000u) << "a phone fetches it in a moment";
 }
 
-// the numbers: that of --osc-in unless said otherwise, and 9003 is left to who asked for it
 TEST(Query, ListensWhereItIsTold) {
-  const osc_test::Client holder;  // a number that is free for TCP too, most likely
-  const std::string port = std::to_string(holder.end().port);
-  {
-    Folder folder;
+  Folder folder;
+  // a number that was free a moment ago; another one when somebody took it meanwhile
+  bool listens = false;
+  for (int attempt = 0; attempt < 20 && !listens; attempt++) {
+    const std::string port = TakenPort(SOCK_STREAM).number();
     Running running(
         limber({folder.file("s.lua", kWindyScene), "--osc-in", "127.0.0.1:0", "--osc-out", "off", "--query", port}));
-    ASSERT_TRUE(running.wait_for("remote panel http://127.0.0.1:" + port + "/")) << running.err();
+    listens = running.wait_for("remote panel http://127.0.0.1:" + port + "/");
   }
-  Folder folder;
+  EXPECT_TRUE(listens);
   const std::string scene = folder.file("s.lua", kWindyScene);
   const Ran off = run({scene, "--fast", "--ticks", "1"});
   EXPECT_NE(off.err.find("OSCQuery off"), std::string::npos) << off.err;

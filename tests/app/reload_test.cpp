@@ -4,7 +4,7 @@
 namespace limber::app_test {
 namespace {
 
-const std::vector<std::string> kQuietPorts = {"--osc-in", "off", "--osc-out", "off"};
+const std::vector<std::string> kQuietPorts = {"--osc-in", "off", "--osc-out", "off", "--query", "off"};
 
 std::vector<std::string> play(const std::string& scene, std::vector<std::string> more = kQuietPorts) {
   more.insert(more.begin(), scene);

@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include "app/program.h"
+#include "app/taken_port.h"
 #include "osc/osc_test_tools.h"
 
 namespace limber::app_test {
@@ -204,8 +205,9 @@ sim:on_step(function() if sim.tick % 10 == 0 then print("run {0} tick " .. sim.t
 )",
                                             number));
   };
-  Running running(limber({save(1), "--osc-in", "127.0.0.1:0", "--osc-out", "127.0.0.1:9", "--query", "off", "--size",
-                          "640x480", "--quality", "low"},
+  const TakenPort sink(SOCK_DGRAM);
+  Running running(limber({save(1), "--osc-in", "127.0.0.1:0", "--osc-out", "127.0.0.1:" + sink.number(), "--query",
+                          "off", "--size", "640x480", "--quality", "low"},
                          display.environment()));
   ASSERT_TRUE(running.wait_for("limber: window 640 × 480")) << running.err();
   ASSERT_TRUE(running.wait_for("OSC in 127.0.0.1:"));

@@ -1,5 +1,5 @@
 -- A megabyte a thousand times, joined.
--- limits: call_ms=500
+-- limits: call_ms=10000
 -- expect: 4: not enough memory: scripts may hold|stopped: scripts may hold
 sim:on_step(function()
   local t, text = {}, ("x"):rep(1e6)

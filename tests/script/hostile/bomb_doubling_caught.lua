@@ -1,5 +1,5 @@
 -- The same in pcall.
--- limits: call_ms=500
+-- limits: call_ms=10000
 -- expect: 5-6: stopped: scripts may hold
 sim:on_step(function() while true do pcall(function()
   local text = "x" while true do text = text .. text end

@@ -1,5 +1,5 @@
 -- A table that grows.
--- limits: call_ms=500 memory=16
+-- limits: call_ms=10000 memory=16
 -- expect: 6: stopped: scripts may hold
 sim:on_step(function()
   local t = {}

@@ -1,5 +1,5 @@
 -- Coroutines, sorts and replacements inside each other.
--- limits: call_ms=200
+-- limits: call_ms=10000
 -- expect: 5: 100 deep
 local function f()
   return coroutine.wrap(function() table.sort({ 1, 2 }, function() ("x"):gsub("x", f) return true end) end)()

@@ -1,5 +1,5 @@
 -- A coroutine that began well in one tick loops in a later one.
--- expect: 6: stopped after
+-- expect: 5-6: stopped after
 local co = coroutine.wrap(function()
   for i = 1, 5 do coroutine.yield(i) end
   while true do

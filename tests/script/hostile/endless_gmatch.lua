@@ -1,5 +1,5 @@
 -- Finding for ever.
--- expect: 4-6: stopped after
+-- expect: 4-7: stopped after
 sim:on_step(function()
   local text, n = ("abc "):rep(1000), 0
   while true do

@@ -1,5 +1,5 @@
 -- A jump to itself.
--- expect: 5: stopped after
+-- expect: 4-5: stopped after
 sim:on_step(function()
   ::again::
   goto again

@@ -1,5 +1,5 @@
 -- Texts whose jumps take the compiler long: of so many jumps that it is refused, and of as many as may be.
--- expect: 10-13: stopped
+-- expect: 4-12: stopped
 local function text_of(jumps)
   local lines = { "local a while true do" }
   for i = 1, jumps do lines[#lines + 1] = "if a then break end" end

@@ -1,5 +1,5 @@
 -- Loops within loops, none of which ends.
--- expect: 5-7: stopped after
+-- expect: 5-8: stopped after
 sim:on_step(function()
   local n = 0
   while true do

@@ -1,5 +1,5 @@
 -- A pattern that would take longer than anybody lives.
--- limits: call_ms=5000
+-- limits: call_ms=60000
 -- expect: 4: this pattern takes too many steps
 sim:on_step(function()
   return (("a"):rep(5000)):find(("a*"):rep(50) .. "b")

@@ -1,5 +1,5 @@
 -- A large table is sorted with no comparing function at all.
--- expect: 4-6: stopped
+-- expect: 4-7: stopped
 sim:on_step(function()
   local t = {}
   for i = 1, 500000 do t[i] = (i * 7919) % 1000003 end

@@ -1,5 +1,5 @@
 -- Two functions that hand over to each other.
--- expect: 3-5: stopped after
+-- expect: 3-6: stopped after
 local f, g
 f = function() return g() end
 g = function() return f() end
