@@ -123,9 +123,14 @@ test_rooms() {
   done
 }
 
+# while the tests run, the default ports are in use
 step_release() {
+  local holder
   configure release build -DLIMBER_TESTS=ON -DLIMBER_BENCHMARKS=ON
-  build build && run_tests build $(test_rooms long)
+  build build || return
+  exec {holder}> >(exec python3 .ci/hold_ports.py)
+  run_tests build $(test_rooms long)
+  exec {holder}>&-
 }
 
 sanitizer_options() {
@@ -133,6 +138,12 @@ sanitizer_options() {
   export UBSAN_OPTIONS=print_stacktrace=1
   export TSAN_OPTIONS=halt_on_error=1:second_deadlock_stack=1:suppressions=$PWD/tests/tsan.supp
   export ASAN_SYMBOLIZER_PATH=/usr/bin/llvm-symbolizer-14
+}
+
+# at most 40 s of what `--long valgrind` does in full
+step_valgrind() {
+  build_program || return
+  memcheck_scenes 12 < <(memory_scenes)
 }
 
 step_asan() {
@@ -181,8 +192,8 @@ count_fuzz() {
 
 fuzz_names() { (cd tests/fuzz 2>/dev/null && ls ./*_fuzz.cpp 2>/dev/null) | sed 's|^\./||; s|\.cpp$||'; }
 
-# how many inputs a target takes in at most about twenty seconds
-fuzz_runs() { case $1 in osc*) echo 120000 ;; script*) echo 1500 ;; websocket*) echo 3500 ;; *) echo 20000 ;; esac; }
+# how many inputs a target takes in at most about fifteen seconds
+fuzz_runs() { case $1 in osc*) echo 90000 ;; script*) echo 1100 ;; websocket*) echo 2600 ;; *) echo 15000 ;; esac; }
 
 # as alike as it can be: one seed, a number of runs, nothing from the runs before; the time is a cap for a slow machine
 # alone. (In a live world Lua's collector stops by the clock, so the OSC target's runs differ a little.)
@@ -201,21 +212,6 @@ step_fuzz() {
     mkdir -p build/check/fuzz_new/NAME
     run_fuzz NAME -seed=1 -runs="$(fuzz_runs NAME)" -max_total_time=300 build/check/fuzz_new/NAME'
   for name in $names; do count_fuzz "$name"; done
-}
-
-# full fuzzing, and the floods and soaks of tests/long
-step_long() {
-  local name minutes=${LIMBER_LONG_MINUTES:-30}
-  say "--long: figures go to docs/evidence.md, with this commit: $(git rev-parse --short=10 HEAD)"
-  for name in $(fuzz_names); do
-    case $name in
-      osc*) run_fuzz "$name" -runs=10000000 "build/check/fuzz/$name" ;;
-      *) run_fuzz "$name" -max_total_time=$((minutes * 60)) "build/check/fuzz/$name" ;;
-    esac
-    count_fuzz "$name"
-  done
-  case " $(test_rooms)" in *" long "*) test_seconds=14400 run_tests build long ;; esac
-  scripts tests/long
 }
 
 # each script names what it needs in a line "# needs: PROGRAM..."

@@ -39,20 +39,31 @@ fault_build() {
   cmake --build "$folder" -j "$(jobs)" --target "$@"
 }
 
-# words "kind:target" of an expect line: "test_sim tsan:test_base" gives "plain:test_sim tsan:test_base"
+# words "kind:target" of an expect line: "test_sim tsan:test_base" gives "plain:test_sim tsan:test_base";
+# "valgrind:joints" is a scene of tests/memory
 expected() { local word; for word in $(fault_line "$1" expect); do case $word in *:*) echo "$word" ;; *) echo "plain:$word" ;; esac; done; }
 
 # each kind once, with its targets behind it
 build_expected() {
   local kind rc=0
   for kind in $(cut -d: -f1 <<<"$1" | sort -u); do
-    fault_build "$kind" $(sed -n "s/^$kind://p" <<<"$1" | sort -u) || rc=1
+    case $kind in
+      valgrind) fault_build plain limber || rc=1 ;;
+      *) fault_build "$kind" $(sed -n "s/^$kind://p" <<<"$1" | sort -u) || rc=1 ;;
+    esac
   done
   return $rc
 }
 
-# green WORD FILTER: runs that test program until its first failure
+# green WORD FILTER: runs that test program until its first failure, or plays that scene under valgrind
 green() {
+  local name=${1#*:}
+  case $1 in valgrind:*)
+    program=$copy/build/plain/limber memcheck_scene 12 $(memory_scenes | grep "^$name ")
+    cat "build/check/valgrind_$name.log"
+    [ "$(<"build/check/valgrind_$name.end")" = 0 ]
+    return ;;
+  esac
   fixed_addresses timeout -k 5 "${LIMBER_FAULT_SECONDS:-300}" "$copy/build/${1%%:*}/${1#*:}" \
     --gtest_color=no --gtest_fail_fast --gtest_filter="${2:-*}"
 }
@@ -77,7 +88,7 @@ try_fault() {
   fi
   git -C "$copy" apply -R --recount "$PWD/$patch"
   case $verdict in
-    red) pass; row "$name" red "$word: $(grep -m1 -oE 'FAILED  \] [A-Za-z0-9_./]+|SUMMARY: .*|timed out' "$log" | sed 's/FAILED  \] //' || true)" ;;
+    red) pass; row "$name" red "$word: $(grep -m1 -oE 'FAILED  \] [A-Za-z0-9_./]+|SUMMARY: .*|timed out|uninitialised value' "$log" | sed 's/FAILED  \] //' || true)" ;;
     green) failed=$((failed + 1)); row "$name" GREEN "no test noticed: $(fault_line "$patch" fault)" ;;
     broken) failed=$((failed + 1)); row "$name" BROKEN "it does not compile, so it proves nothing ($log)" ;;
   esac

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <cstdlib>
 
+#include "base/memcheck.h"
 #include "sim/bullet.h"
 
 namespace limber {
@@ -33,6 +34,7 @@ void* take(std::size_t size, int alignment) {
   auto* const got = static_cast<std::byte*>(arena.allocate(size + kLabel));
   if (got == nullptr) return take_from_heap(size, aligned);
   void* const block = got + kLabel;
+  mark_uninitialized(block, size);
   label_of(block) = reinterpret_cast<std::uintptr_t>(&arena) | 1u;
   return block;
 }

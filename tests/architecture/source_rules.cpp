@@ -66,6 +66,7 @@ constexpr std::array kLibraries{
     Library{"histedit.h", "app"},
     Library{"spdlog/", "base"},
     Library{"sanitizer/", "base"},
+    Library{"valgrind/", "base"},
     Library{"fmt/", ""},
     Library{"glm/", ""},
     Library{"nlohmann/", ""},

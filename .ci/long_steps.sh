@@ -1,0 +1,76 @@
+# shellcheck shell=bash disable=SC2046,SC2086,SC2154
+# The parts of ./check --long. A part is a function long_NAME in a file *_steps.sh, with a comment "# --long NAME: …" for
+# the help, or a fuzz target. It takes an hour at most. A part that passed is left out when it is asked for again with
+# the same files, so that an interrupted run goes on where it was.
+
+part_names() { compgen -A function long_ | sed 's/^long_//'; fuzz_names; }
+
+# the lines of the help
+describe_parts() {
+  sed -n 's/^# --long \([a-z_]*\): \(.*\)/\1|\2/p' .ci/*_steps.sh | while IFS='|' read -r name text; do
+    printf '  %-16s %s\n' "$name" "$text"
+  done
+  printf '  %-16s %s\n' "NAME_fuzz" "30 minutes of a fuzz target: $(fuzz_names | tr '\n' ' ')"
+}
+
+# the commit; fails when the files differ from it, since then nothing can be said about them later
+clean_commit() { [ -z "$(git status --porcelain 2>&1)" ] && git rev-parse --short=10 HEAD; }
+
+# run_part NAME: leaves a stamp with the commit when all of it passed
+run_part() {
+  local stamp=build/check/long/$1.passed commit before=$failed begin=$SECONDS
+  commit=$(clean_commit) || commit=none
+  mkdir -p build/check/long
+  if [ "$commit" != none ] && [ "$(cat "$stamp" 2>/dev/null)" = "$commit" ]; then
+    pass
+    say "$1: passed before at $commit (to run it again, remove $stamp)"
+    return
+  fi
+  rm -f "$stamp"
+  case $1 in *_fuzz) fuzz_at_length "$1" ;; *) "long_$1" ;; esac
+  if [ "$failed" = "$before" ]; then
+    [ "$commit" = none ] || printf '%s\n' "$commit" >"$stamp"
+    say "$1: passed in $((SECONDS - begin)) s"
+  else
+    say "$1: FAILED in $((SECONDS - begin)) s"
+  fi
+}
+
+# step_long NAME...: these parts; all without a name
+step_long() {
+  local name
+  sanitizer_options
+  say "--long: figures go to docs/evidence.md, with this commit: $(git rev-parse --short=10 HEAD)"
+  [ $# != 0 ] || set -- $(part_names)
+  for name; do run_part "$name"; done
+}
+
+# what one finds stays in build/check/fuzz/NAME, where the next run begins
+fuzz_at_length() {
+  [ -e build/asan/build.ninja ] || configure asan build/asan
+  build build/asan "$1" || return
+  case $1 in
+    osc*) run_fuzz "$1" -runs=10000000 -max_total_time=3600 "build/check/fuzz/$1" ;;
+    *) run_fuzz "$1" -max_total_time=$((${LIMBER_LONG_MINUTES:-30} * 60)) "build/check/fuzz/$1" ;;
+  esac
+  count_fuzz "$1"
+}
+
+# tests_at_length FILTER: these tests of tests/long
+tests_at_length() {
+  configure release build -DLIMBER_TESTS=ON -DLIMBER_BENCHMARKS=ON
+  build build test_long && test_seconds=3600 test_only=$1 run_tests build long
+}
+
+# --long processes: twenty processes, paced, fast, pinned, with and without streams and address randomization
+long_processes() { tests_at_length 'LongDeterminism.*'; }
+# --long flood: as fast as three senders can
+long_flood() { tests_at_length 'Flood.*'; }
+# --long soak: memory in an hour of stage time, and a flood of questions
+long_soak() { tests_at_length 'Soak.*'; }
+# --long crash: two hundred killed shows
+long_crash() { tests_at_length 'LongCrash.*'; }
+# --long takes: takes of ten wild minutes, and of many seeds
+long_takes() { tests_at_length 'LongTake.*'; }
+# --long scripts: the scripts of tests/long, such as the Debian package in an empty system
+long_scripts() { scripts tests/long; }

@@ -1,0 +1,112 @@
+// ./check --long on a machine where all is installed: its parts by name, and which of them are run again.
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <string>
+
+#include <gtest/gtest.h>
+
+namespace limber {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// A repository with `check`, its steps, and three parts of the test's own that need no build.
+class CheckTree {
+ public:
+  CheckTree() {
+    std::string pattern = (fs::temp_directory_path() / "limber_check_XXXXXX").string();
+    root_ = ::mkdtemp(pattern.data());
+    fs::create_directories(root_ / "bin");
+    fs::copy_file(fs::path(LIMBER_SOURCE_DIR) / "check", root_ / "check");
+    fs::copy(fs::path(LIMBER_SOURCE_DIR) / ".ci", root_ / ".ci");
+    write(".gitignore", "/build/\n/bin/\n");
+    write(".ci/test_steps.sh",
+          "# --long apple: passes\nlong_apple() { echo apple >>build/calls; pass; }\n"
+          "# --long pear: fails\nlong_pear() { echo pear >>build/calls; fail pear; }\n"
+          "# --long plum: passes\nlong_plum() { echo plum >>build/calls; pass; }\n");
+    // every package is installed
+    write("bin/dpkg-query", "#!/bin/sh\nshift 2; for p in \"$@\"; do echo \"ii $p \"; done\n");
+    write("bin/g++", "#!/bin/sh\necho 12\n");
+    for (const char* program : {"dpkg-query", "g++"}) fs::permissions(root_ / "bin" / program, fs::perms::owner_all);
+    commit();
+  }
+  ~CheckTree() { fs::remove_all(root_); }
+  CheckTree(const CheckTree&) = delete;
+  CheckTree& operator=(const CheckTree&) = delete;
+
+  void write(const std::string& name, const std::string& text) const { std::ofstream(root_ / name) << text; }
+  void commit() const {
+    shell(
+        "git init -q . && git add -A && git -c user.name=a -c user.email=a@b.example -c commit.gpgsign=false commit "
+        "-qm all --allow-empty");
+  }
+
+  int check(const std::string& arguments) {
+    fs::remove(root_ / "build/calls");
+    const int code = shell("PATH=\"$PWD/bin:$PATH\" ./check " + arguments);
+    text = read("bin/out");
+    calls = read("build/calls");
+    return code;
+  }
+
+  std::string text;   ///< What it printed.
+  std::string calls;  ///< The parts that it ran.
+
+ private:
+  int shell(const std::string& command) const {
+    const int status =
+        std::system(("cd '" + root_.string() + "' && { " + command + "; } >bin/out 2>&1 </dev/null").c_str());
+    return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+  }
+  std::string read(const std::string& name) const {
+    std::ifstream in(root_ / name);
+    return {std::istreambuf_iterator<char>(in), {}};
+  }
+  fs::path root_;
+};
+
+TEST(Check, RunsTheLongPartsThatAreNamed) {
+  CheckTree tree;
+  EXPECT_EQ(tree.check("--long plum apple"), 0) << tree.text;
+  EXPECT_EQ(tree.calls, "plum\napple\n") << tree.text;
+  EXPECT_NE(tree.text.find("check: plum: passed in "), std::string::npos) << tree.text;
+  EXPECT_TRUE(tree.text.ends_with("2 passed, 0 failed\n")) << tree.text;
+}
+
+TEST(Check, LeavesOutLongPartsThatPassedAtTheSameCommit) {
+  CheckTree tree;
+  EXPECT_EQ(tree.check("--long apple pear"), 1) << tree.text;
+  EXPECT_EQ(tree.calls, "apple\npear\n") << tree.text;
+  EXPECT_EQ(tree.check("--long apple pear plum"), 1) << tree.text;
+  EXPECT_EQ(tree.calls, "pear\nplum\n") << "the first one passed before: " << tree.text;
+  EXPECT_TRUE(tree.text.ends_with("2 passed, 1 failed\n")) << tree.text;
+  tree.commit();
+  EXPECT_EQ(tree.check("--long apple"), 0) << tree.text;
+  EXPECT_EQ(tree.calls, "apple\n") << "another commit: " << tree.text;
+  tree.write("new_file", "");
+  EXPECT_EQ(tree.check("--long apple"), 0) << tree.text;
+  EXPECT_EQ(tree.calls, "apple\n") << "the files are not those of the commit: " << tree.text;
+}
+
+TEST(Check, RejectsUnknownLongParts) {
+  CheckTree tree;
+  EXPECT_EQ(tree.check("--long apple cherry"), 2);
+  EXPECT_EQ(tree.calls, "");
+  EXPECT_NE(tree.text.find("check: 'cherry' is no part of --long."), std::string::npos) << tree.text;
+  EXPECT_NE(tree.text.find("cure: ./check --help lists them."), std::string::npos) << tree.text;
+}
+
+TEST(Check, HelpListsTheLongParts) {
+  CheckTree tree;
+  EXPECT_EQ(tree.check("--help"), 0);
+  for (const char* line : {"\n  apple            passes\n", "\n  valgrind         ", "\n  twenty           "})
+    EXPECT_NE(tree.text.find(line), std::string::npos) << line << tree.text;
+}
+
+}  // namespace
+}  // namespace limber
