@@ -118,11 +118,25 @@ void add_body(const BodyModel& model, std::string& out) {
       out += fmt::format(" of {} points (farthest vertex {:.2g} m outside)", s.shape.mesh->hull.size(),
                          s.shape.mesh->hull_error);
     }
+    if (!link.self_collision) out += ", does not collide with its own body (selfCollide)";
     out += '\n';
   }
   for (const MergedLink& m : model.merged) {
     out += fmt::format("  {}: merged into {}\n", printable(m.name),
                        printable(model.links[static_cast<std::size_t>(m.link)].name));
+  }
+}
+
+const std::string& link_name(const BodyModel& model, int link) {
+  return model.links[static_cast<std::size_t>(link)].name;
+}
+
+void add_overlaps(const BodyModel& model, std::string& out) {
+  if (model.overlaps.empty()) return;
+  out += "\npairs excluded from collision (they overlap with all joints at 0)\n";
+  for (const Overlap& overlap : model.overlaps) {
+    out += fmt::format("  {} and {}: {:.3g} mm\n", printable(link_name(model, overlap.a)),
+                       printable(link_name(model, overlap.b)), overlap.depth * 1000);
   }
 }
 
@@ -135,7 +149,15 @@ std::string inspect_json(const BodyModel& model) {
   for (const Problem& p : model.problems) {
     problems.push_back({{"line", p.line}, {"severity", severity_name(p.severity)}, {"text", p.text}, {"cure", p.cure}});
   }
-  const Json all{{"robot", model.name}, {"links", links}, {"joints", joints}, {"problems", problems}};
+  Json pairs = Json::array(), apart = Json::array();
+  for (const Overlap& overlap : model.overlaps) {
+    pairs.push_back({{"a", link_name(model, overlap.a)}, {"b", link_name(model, overlap.b)}, {"depth", overlap.depth}});
+  }
+  for (const LinkModel& link : model.links) {
+    if (!link.self_collision) apart.push_back(link.name);
+  }
+  const Json all{{"robot", model.name},        {"links", links},      {"joints", joints}, {"excluded_pairs", pairs},
+                 {"no_self_collision", apart}, {"problems", problems}};
   return all.dump(1, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 
@@ -147,6 +169,7 @@ std::string inspect_table(const BodyModel& model) {
   add_links(model, out);
   if (!model.file_joints.empty()) add_joints(model, out);
   add_body(model, out);
+  add_overlaps(model, out);
   out += model.problems.empty() ? "\nno problems\n" : "\n";
   for (const Problem& p : model.problems) {
     out += fmt::format("{}:{}: {}: {}. {}\n", printable(model.file), p.line, severity_name(p.severity), p.text, p.cure);

@@ -56,6 +56,7 @@ struct MeshModel {
   std::vector<unsigned> triangles;  ///< Three indices a triangle, counter-clockwise seen from outside.
   std::vector<Vec3> hull;           ///< Hull vertices for contact, reduced (physics.md: 16..64).
   double hull_error = 0;            ///< Distance of the farthest vertex left out from the reduced hull, metres.
+  double hull_volume = 0;           ///< Of the whole convex hull, m³.
   /// What the whole hull is, when that is a box, sphere or capsule; in the mesh's frame.
   std::optional<PlacedShape> primitive;
   std::uint64_t content = 0;  ///< hash_bytes of the file.
@@ -69,8 +70,9 @@ struct LinkModel {
   Inertial inertial;                    ///< After merging, defaults and repairs; mass 0: static.
   std::vector<PlacedShape> collisions;  ///< Merged children's included, in this link's frame.
   std::vector<PlacedShape> visuals;
-  Pose home;   ///< World pose with all joints at 0 and the root at the origin.
-  Pose start;  ///< World pose as placed at the start (joint values within their limits).
+  bool self_collision = true;  ///< False: <gazebo><selfCollide> keeps it from colliding with its own body.
+  Pose home;                   ///< World pose with all joints at 0 and the root at the origin.
+  Pose start;                  ///< World pose as placed at the start (joint values within their limits).
 };
 
 enum class JointType { fixed, revolute, continuous, prismatic, planar, floating, spherical };
@@ -105,6 +107,13 @@ struct MergedLink {
   std::string name;
   int link = -1;  ///< Index of the link that carries it.
   Pose offset;    ///< Its frame in that link's frame.
+};
+
+/// Two links whose collision shapes overlap.
+struct Overlap {
+  int a = 0;  ///< Indices into BodyModel::links, a < b.
+  int b = 0;
+  double depth = 0;  ///< Penetration depth, m.
 };
 
 enum class Severity { note, warning, error };
@@ -148,6 +157,8 @@ struct BodyModel {
   std::vector<LinkModel> links;    ///< links[0] is the root.
   std::vector<JointModel> joints;  ///< parent index < child index, always.
   std::vector<MergedLink> merged;
+  /// Links without a common joint that overlap with all joints at 0: excluded from collision by default.
+  std::vector<Overlap> overlaps;
   std::vector<FileLink> file_links;
   std::vector<FileJoint> file_joints;
   std::vector<Problem> problems;

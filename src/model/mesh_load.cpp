@@ -77,6 +77,7 @@ void measure(MeshModel& mesh) {
   mesh.hull_error = contact.error;
   mesh.primitive = recognise(whole);
   const Inertial hull = solid_of(whole.vertices, whole.triangles);
+  mesh.hull_volume = hull.mass;
   mesh.closed = is_closed(mesh.triangles);
   Inertial own = mesh.closed ? solid_of(mesh.vertices, mesh.triangles) : Inertial{};
   if (own.mass < 0) {

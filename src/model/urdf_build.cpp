@@ -99,9 +99,18 @@ void build_structure(UrdfBuild& build) {
       build.body_link[node] = build.body_link[parent];
       build.offset[node] = build.offset[parent] * build.joint(node).origin.pose();
       build.model.merged.push_back({build.link(node).name, build.body_link[node], build.offset[node]});
+      const LinkModel& carrier = build.model.links[static_cast<std::size_t>(build.body_link[node])];
+      if (!build.link(node).self_collision.value_or(true) && carrier.self_collision) {
+        build.problems.warning(build.link(node).line,
+                               fmt::format("link '{}': <selfCollide> false ignored: it is merged into '{}'",
+                                           printable(build.link(node).name), printable(carrier.name)),
+                               "Write it for that link, or keep fixed joints (keep_fixed).");
+      }
     } else {
       build.body_link[node] = static_cast<int>(build.model.links.size());
-      build.model.links.emplace_back().name = build.link(node).name;
+      LinkModel& link = build.model.links.emplace_back();
+      link.name = build.link(node).name;
+      link.self_collision = build.link(node).self_collision.value_or(true);
       if (build.tree[node].joint >= 0) {
         build.body_joint[node] = static_cast<int>(build.model.joints.size());
         build.model.joints.push_back(make_joint(build, node));

@@ -36,5 +36,8 @@ void build_masses(UrdfBuild& build);
 /// Mimics, start values, home and start poses, and the lists as the file has them (urdf_pose.cpp). The error names an
 /// unknown joint in `options.pose`. [any]
 Result<void> build_poses(UrdfBuild& build);
+/// Pairs of links that overlap at the home pose; problems of collision shapes: links without any, hulls that fill a
+/// hollow (urdf_collisions.cpp). [any]
+void build_collisions(UrdfBuild& build);
 
 }  // namespace limber

@@ -60,17 +60,26 @@ class Check {
       } else if (kind == "material") {
         material(*e);
       } else {
+        if (kind == "gazebo") gazebo(*e);
         ++unused_.try_emplace(std::string(kind), 0, e->GetLineNum()).first->second.first;
       }
     }
     stray_text(robot);
     colors();
+    self_collisions();
     say_unused();
     reader_.finish();
     return std::move(file_);
   }
 
  private:
+  struct SelfCollision {
+    std::string link;
+    bool all;
+    bool on;
+    int line;
+  };
+
   void root(const Element& robot, const std::string& fallback_name) {
     const char* name = robot.Attribute("name");
     const bool usable = name && !name_fault(name);
@@ -79,8 +88,9 @@ class Check {
       problems_.warning(robot.GetLineNum(), fmt::format("<robot> has no usable name; called '{}'", file_.name),
                         "Write <robot name=\"…\">.");
     }
-    const char* version = robot.Attribute("version");
-    if (version && std::string_view(version) != "1.0") {
+    reader_.check_attributes(robot, {"name", "version"});
+    const std::string_view version = robot.Attribute("version") ? robot.Attribute("version") : "1.0";
+    if (version != "1.0" && version != "1.1" && version != "1.2") {
       problems_.warning(robot.GetLineNum(), fmt::format("<robot version='{}'> is read as 1.0", printable(version)),
                         "Write version=\"1.0\", or take it out.");
     }
@@ -162,9 +172,11 @@ class Check {
       problems_.warning(element.GetLineNum(), "a <material> has no name; not used", "Write <material name=\"…\">.");
       return;
     }
+    reader_.check_attributes(element, {"name"});
     const std::string owner = fmt::format("material '{}'", printable(name));
     std::optional<Vec3> color;
     double alpha = 1;
+    declared_materials_.insert(name);
     if (!reader_.color(element, owner, color, alpha)) {
       problems_.warning(element.GetLineNum(), owner + " has no colour; not used",
                         "Write <color rgba=\"r g b a\"/> inside; textures are not used.");
@@ -176,6 +188,7 @@ class Check {
 
   // materials that links define in place may be named by others, too
   void colors() {
+    std::map<std::string, std::pair<int, int>> undefined;  // how many visuals, the first's line
     for (const UrdfLink& link : file_.links) {
       for (const UrdfShape& shape : link.visuals) {
         if (shape.color && !shape.material.empty()) materials_.try_emplace(shape.material, *shape.color, shape.alpha);
@@ -185,7 +198,58 @@ class Check {
       for (UrdfShape& shape : link.visuals) {
         if (shape.color || shape.material.empty()) continue;
         const auto found = materials_.find(shape.material);
-        if (found != materials_.end()) std::tie(shape.color, shape.alpha) = found->second;
+        if (found != materials_.end()) {
+          std::tie(shape.color, shape.alpha) = found->second;
+        } else if (!declared_materials_.contains(shape.material)) {
+          ++undefined.try_emplace(shape.material, 0, shape.line).first->second.first;
+        }
+      }
+    }
+    for (const auto& [name, seen] : undefined) {
+      const std::string places = seen.first == 1 ? "a visual" : fmt::format("{} visuals", seen.first);
+      problems_.warning(seen.second,
+                        fmt::format("material '{}' of {} is not defined; the default color is used",
+                                    printable(std::string_view(name).substr(0, kShownName)), places),
+                        "Write <material name=\"…\"><color rgba=\"r g b a\"/></material> inside <robot>.");
+    }
+  }
+
+  // <gazebo reference="link"><selfCollide>; without a reference it is for all links
+  void gazebo(const Element& element) {
+    for (const char* const name : {"selfCollide", "self_collide"}) {
+      const Element* const found = reader_.child(element, name);
+      if (!found) continue;
+      const std::string_view text = found->GetText() ? found->GetText() : "";
+      const bool on = same_name(text, "true") || same_name(text, "1");
+      if (!on && !same_name(text, "false") && !same_name(text, "0")) {
+        problems_.warning(found->GetLineNum(),
+                          fmt::format("<{}> is '{}'; ignored", name, printable(text.substr(0, kShownName))),
+                          "Write true or false.");
+        continue;
+      }
+      const char* const link = element.Attribute("reference");
+      self_collisions_.push_back({link ? link : "", link == nullptr, on, found->GetLineNum()});
+    }
+  }
+
+  // that of a single link wins
+  void self_collisions() {
+    for (const bool all : {true, false}) {
+      for (const SelfCollision& said : self_collisions_) {
+        if (said.all != all) continue;
+        bool found = all;
+        for (UrdfLink& link : file_.links) {
+          if (!all && link.name != said.link) continue;
+          link.self_collision = said.on;
+          found = true;
+        }
+        if (found) continue;
+        const std::vector<std::string> names(link_names_.begin(), link_names_.end());
+        problems_.warning(
+            said.line,
+            fmt::format("<gazebo reference='{}'> with <selfCollide> names no link{}; ignored",
+                        printable(std::string_view(said.link).substr(0, kShownName)), name_hint(said.link, names)),
+            "Name a link of this file.");
       }
     }
   }
@@ -230,6 +294,8 @@ class Check {
   std::set<std::string, std::less<>> joint_names_;
   std::map<std::string, int> next_suffix_;
   std::map<std::string, std::pair<Vec3, double>> materials_;
+  std::set<std::string, std::less<>> declared_materials_;  // also those without a color, which is reported
+  std::vector<SelfCollision> self_collisions_;
   std::map<std::string, std::pair<int, int>> unused_;  // kind -> how many, first line
 };
 

@@ -20,7 +20,8 @@ namespace {
 
 std::string vec(const Vec3& v) { return fmt::format("{:.17g} {:.17g} {:.17g}", v.x, v.y, v.z); }
 std::string origin_text(const UrdfOrigin& o) {
-  return fmt::format("<origin xyz=\"{}\" rpy=\"{}\"/>", vec(o.xyz), vec(o.rpy));
+  // urdfdom 1.0 reads no quaternions
+  return fmt::format("<origin xyz=\"{}\" rpy=\"{}\"/>", vec(o.xyz), vec(o.quat ? euler_of(*o.quat) : o.rpy));
 }
 
 // urdfdom knows neither capsules nor planes: they travel as what comes nearest, so that the counts stay comparable

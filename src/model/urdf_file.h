@@ -12,9 +12,10 @@ namespace limber {
 
 struct UrdfOrigin {
   Vec3 xyz{0, 0, 0};
-  Vec3 rpy{0, 0, 0};  ///< Fixed axes, radians.
+  Vec3 rpy{0, 0, 0};         ///< Fixed axes, radians.
+  std::optional<Quat> quat{};  ///< Unit; from `quat_xyzw`, where it replaces `rpy`.
 
-  Pose pose() const { return {xyz, quat_euler(rpy.x, rpy.y, rpy.z)}; }
+  Pose pose() const { return {xyz, quat ? *quat : quat_euler(rpy.x, rpy.y, rpy.z)}; }
 };
 
 struct UrdfInertial {
@@ -42,6 +43,7 @@ struct UrdfLink {
   std::optional<UrdfInertial> inertial;
   std::vector<UrdfShape> collisions;
   std::vector<UrdfShape> visuals;
+  std::optional<bool> self_collision;  ///< Of a <gazebo> element that refers to it.
 };
 
 struct UrdfMimic {

@@ -117,6 +117,7 @@ Result<std::shared_ptr<const BodyModel>> import_bytes(std::string_view bytes, co
   build_structure(build);
   build_masses(build);
   if (const Result<void> posed = build_poses(build); !posed) return Error{fmt::format("{}: {}", shown, posed.error())};
+  build_collisions(build);
   model->problems = problems.take();
   model->files.assign(1, path);
   model->file_contents.assign(1, hash_bytes(bytes));

@@ -15,6 +15,7 @@ namespace limber {
 
 namespace {
 
+constexpr NumberRange kQuatRange{-1e6, 1e6, "within 1e6"};
 constexpr std::string_view kBlanks = " \t\r\n";
 
 std::string_view trimmed(std::string_view text) {
@@ -126,31 +127,38 @@ std::optional<double> UrdfReader::number(const Element& element, const char* att
 
 std::optional<Vec3> UrdfReader::vector(const Element& element, const char* attribute, const std::string& owner,
                                        const NumberRange& range) {
+  std::array<double, 3> out{};
+  if (!numbers(element, attribute, owner, range, out)) return std::nullopt;
+  return Vec3(out[0], out[1], out[2]);
+}
+
+// false where the attribute is absent, or wrong, which is reported
+bool UrdfReader::numbers(const Element& element, const char* attribute, const std::string& owner,
+                         const NumberRange& range, std::span<double> out) {
   const tinyxml2::XMLAttribute* found = element.FindAttribute(attribute);
-  if (!found) return std::nullopt;
+  if (!found) return false;
   const std::string where = fmt::format("{}: <{} {}>", owner, name_of(element), attribute);
   const std::string_view text = found->Value();
-  Vec3 out{0, 0, 0};
   std::size_t at = text.find_first_not_of(kBlanks);
-  int count = 0;
+  std::size_t count = 0;
   for (; at != std::string_view::npos; ++count) {
     const std::size_t end = std::min(text.find_first_of(kBlanks, at), text.size());
-    if (count < 3) {
+    if (count < out.size()) {
       const std::optional<double> value = one_number(text.substr(at, end - at), found->GetLineNum(), where, range);
-      if (!value) return std::nullopt;
+      if (!value) return false;
       out[count] = *value;
     }
     at = text.find_first_not_of(kBlanks, end);
   }
-  if (count == 3 && text.find_first_of("\t\r\n") != std::string_view::npos && odd_numbers_++ == 0) {
+  if (count == out.size() && text.find_first_of("\t\r\n") != std::string_view::npos && odd_numbers_++ == 0) {
     odd_line_ = found->GetLineNum();
     odd_text_ = shown(text);
   }
-  if (count == 3) return out;
+  if (count == out.size()) return true;
   problems.error(found->GetLineNum(),
-                 fmt::format("{}: '{}' has {} numbers, not 3; left out", where, shown(text), count),
-                 "Write three numbers with blanks between them.");
-  return std::nullopt;
+                 fmt::format("{}: '{}' has {} numbers, not {}; left out", where, shown(text), count, out.size()),
+                 fmt::format("Write {} numbers with blanks between them.", out.size() == 3 ? "three" : "four"));
+  return false;
 }
 
 UrdfOrigin UrdfReader::origin(const Element& parent, const std::string& owner) {
@@ -159,12 +167,34 @@ UrdfOrigin UrdfReader::origin(const Element& parent, const std::string& owner) {
   if (!element) return out;
   out.xyz = vector(*element, "xyz", owner, kPlaceRange).value_or(Vec3(0));
   out.rpy = vector(*element, "rpy", owner, kAngleRange).value_or(Vec3(0));
+  check_attributes(*element, {"xyz", "rpy", "quat_xyzw"});
+  std::array<double, 4> quat{};
+  if (!numbers(*element, "quat_xyzw", owner, kQuatRange, quat)) return out;
+  const Quat read = quat_xyzw(quat[0], quat[1], quat[2], quat[3]);
+  const double length = glm::length(read);
+  if (length < 1e-9) {
+    problems.error(element->GetLineNum(),
+                   fmt::format("{}: <origin quat_xyzw> is 0 0 0 0, which is no rotation; left out", owner),
+                   "Write the unit quaternion as x y z w; no rotation is 0 0 0 1.");
+    return out;
+  }
+  if (element->Attribute("rpy") != nullptr) {
+    problems.warning(element->GetLineNum(), fmt::format("{}: <origin> has both rpy and quat_xyzw; rpy ignored", owner),
+                     "Write one of the two.");
+  }
+  if (std::abs(length - 1) > 1e-3) {
+    problems.note(element->GetLineNum(),
+                  fmt::format("{}: <origin quat_xyzw> has length {:.6g}, not 1; normalized", owner, length),
+                  "Write a unit quaternion.");
+  }
+  out.quat = read / length;
   return out;
 }
 
 bool UrdfReader::color(const Element& material, const std::string& owner, std::optional<Vec3>& color, double& alpha) {
   const Element* element = child(material, "color");
   if (!element) return false;
+  check_attributes(*element, {"rgba"});
   const char* text = element->Attribute("rgba");
   std::vector<double> parts;
   bool good = text != nullptr;
@@ -187,7 +217,51 @@ bool UrdfReader::color(const Element& material, const std::string& owner, std::o
   return true;
 }
 
+void UrdfReader::check_attributes(const Element& element, std::initializer_list<std::string_view> known) {
+  constexpr std::size_t kMostKinds = 200;
+  for (const tinyxml2::XMLAttribute* a = element.FirstAttribute(); a; a = a->Next()) {
+    const std::string_view name = a->Name();
+    if (std::find(known.begin(), known.end(), name) != known.end()) continue;
+    if (name == "concave" || name == "xmlns" || name.starts_with("xmlns:")) continue;
+    const std::pair key(std::string(name_of(element)), std::string(name));
+    if (unused_attributes_.size() >= kMostKinds && !unused_attributes_.contains(key)) continue;
+    UnusedAttribute& seen = unused_attributes_[key];
+    if (seen.count++ > 0) continue;
+    seen.line = a->GetLineNum();
+    seen.known = known;
+  }
+}
+
+void UrdfReader::check_concave(const Element& element, const std::string& owner) {
+  const char* text = element.Attribute("concave");
+  if (!text || same_name(text, "no") || same_name(text, "false") || same_name(text, "0")) return;
+  if (concave_meshes_++ > 0) return;
+  concave_line_ = element.GetLineNum();
+  concave_owner_ = owner;
+}
+
+void UrdfReader::report_attributes() {
+  for (const auto& [key, seen] : unused_attributes_) {
+    const auto& [element, attribute] = key;
+    std::string text = fmt::format("<{}> has no attribute '{}'; ignored", printable(element), shown(attribute));
+    if (seen.count > 1) text += fmt::format(" in {} places", seen.count);
+    const std::string_view meant = nearest_name(attribute, seen.known);
+    if (!meant.empty()) {
+      problems.warning(seen.line, std::move(text), fmt::format("Did you mean '{}'?", meant));
+    } else {
+      problems.note(seen.line, std::move(text), "Nothing to do, unless you expected an effect.");
+    }
+  }
+  if (concave_meshes_ == 0) return;
+  problems.warning(
+      concave_line_,
+      fmt::format("{}: concave=\"yes\" is not supported; the mesh collides as its convex hull{}", concave_owner_,
+                  concave_meshes_ > 1 ? fmt::format(" … and {} more of this kind", concave_meshes_ - 1) : ""),
+      "Split the mesh into convex pieces, one <collision> for each.");
+}
+
 void UrdfReader::finish() {
+  report_attributes();
   if (odd_numbers_ == 0) return;
   problems.note(
       odd_line_,

@@ -2,9 +2,14 @@
 // line, what the file says, and the cure. Part of the room's inside: only src/model includes it.
 #pragma once
 
+#include <initializer_list>
+#include <map>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
+#include <utility>
+#include <vector>
 
 #include <tinyxml2.h>
 
@@ -53,13 +58,25 @@ class UrdfReader {
   /// One joint element; nothing when it can't connect anything (said).
   std::optional<UrdfJoint> joint(const Element& element, const std::string& name);
 
-  /// Says once, at the end, what was read but written oddly.
+  /// Counts attributes of an element that are not among `known`, to be reported by finish().
+  void check_attributes(const Element& element, std::initializer_list<std::string_view> known);
+
+  /// Reports once, at the end, numbers that were read but are spelled oddly, and, grouped, attributes without effect.
   void finish();
 
   Problems& problems;
 
  private:
+  struct UnusedAttribute {
+    int count = 0;
+    int line = 0;
+    std::vector<std::string_view> known;
+  };
+  void report_attributes();
+  void check_concave(const Element& element, const std::string& owner);
   std::optional<double> one_number(std::string_view text, int line, const std::string& where, const NumberRange& range);
+  bool numbers(const Element& element, const char* attribute, const std::string& owner, const NumberRange& range,
+               std::span<double> out);
   std::optional<UrdfInertial> inertial(const Element& element, const std::string& owner);
   void tensor(const Element& element, const std::string& owner, UrdfInertial& out);
   std::optional<UrdfShape> shape(const Element& element, const std::string& owner);
@@ -76,6 +93,10 @@ class UrdfReader {
   int odd_numbers_ = 0;
   int odd_line_ = 0;
   std::string odd_text_;
+  std::map<std::pair<std::string, std::string>, UnusedAttribute> unused_attributes_;  // by element and attribute
+  int concave_meshes_ = 0;
+  int concave_line_ = 0;
+  std::string concave_owner_;
 };
 
 }  // namespace limber

@@ -49,6 +49,7 @@ std::optional<UrdfJoint> UrdfReader::joint(const Element& element, const std::st
   for (const char* side : {"parent", "child"}) {
     const Element* found = only_child(element, side, owner);
     const char* link = found ? found->Attribute("link") : nullptr;
+    if (found) check_attributes(*found, {"link"});
     if (!link || !*link) {
       problems.error(out.line, fmt::format("{} names no {} link; left out", owner, side),
                      fmt::format("Write <{} link=\"…\"/> inside the joint.", side));
@@ -56,6 +57,7 @@ std::optional<UrdfJoint> UrdfReader::joint(const Element& element, const std::st
     }
     (std::string_view(side) == "parent" ? out.parent : out.child) = link;
   }
+  check_attributes(element, {"name", "type"});
   out.type = joint_type(element, owner);
   out.origin = origin(element, owner);
   if (out.type != JointType::fixed && out.type != JointType::floating) out.axis = axis(element, owner);
@@ -64,6 +66,7 @@ std::optional<UrdfJoint> UrdfReader::joint(const Element& element, const std::st
     out.mimic = mimic(element, owner);
   }
   const Element* dynamics = only_child(element, "dynamics", owner);
+  if (dynamics) check_attributes(*dynamics, {"damping", "friction"});
   if (dynamics && !dynamics->Attribute("damping") && !dynamics->Attribute("friction")) {
     problems.warning(dynamics->GetLineNum(), fmt::format("{}: <dynamics> says nothing; not used", owner),
                      "Write damping=\"…\" or friction=\"…\", or take the element out.");
@@ -98,6 +101,7 @@ Vec3 UrdfReader::axis(const Element& element, const std::string& owner) {
   const Vec3 fallback{1, 0, 0};
   const std::string cure = "Write <axis xyz=\"x y z\"/>, a direction in the joint's frame.";
   const Element* found = only_child(element, "axis", owner);
+  if (found) check_attributes(*found, {"xyz"});
   if (!found || !found->Attribute("xyz")) {
     problems.warning((found ? found : &element)->GetLineNum(),
                      fmt::format("{} has no axis; URDF's default 1 0 0 is taken", owner), cure);
@@ -128,6 +132,7 @@ void UrdfReader::limit(const Element& element, const std::string& owner, UrdfJoi
                      fmt::format("Write <limit lower= upper= effort= velocity=/>{}", or_continuous(out.type)));
     return;
   }
+  check_attributes(*found, {"lower", "upper", "effort", "velocity"});
   out.effort = number(*found, "effort", owner, kForceRange).value_or(0);
   out.velocity = number(*found, "velocity", owner, kSpeedRange).value_or(0);
   if (!found->Attribute("velocity")) {
@@ -179,6 +184,7 @@ std::optional<UrdfMimic> UrdfReader::mimic(const Element& element, const std::st
   if (!found) return std::nullopt;
   UrdfMimic out;
   out.line = found->GetLineNum();
+  check_attributes(*found, {"joint", "multiplier", "offset"});
   const char* joint = found->Attribute("joint");
   if (!joint || !*joint) {
     problems.error(out.line, fmt::format("{}: <mimic> names no joint; left out", owner), "Write joint=\"…\".");

@@ -24,6 +24,8 @@ UrdfLink UrdfReader::link(const Element& element, const std::string& name) {
   out.name = name;
   out.line = element.GetLineNum();
   const std::string owner = fmt::format("link '{}'", printable(name));
+  check_attributes(element, {"name"});
+  check_concave(element, owner);
   if (const Element* found = only_child(element, "inertial", owner)) out.inertial = inertial(*found, owner);
   for (const Element* e = element.FirstChildElement(); e; e = e->NextSiblingElement()) {
     const std::string_view kind = name_of(*e);
@@ -49,6 +51,7 @@ std::optional<UrdfInertial> UrdfReader::inertial(const Element& element, const s
                    "Write <mass value=\"…\"/> in kg inside <inertial>.");
     return std::nullopt;
   }
+  check_attributes(*mass, {"value"});
   const std::optional<double> value = number(*mass, "value", owner, kMassRange);
   if (!value) return std::nullopt;
   out.mass = *value;
@@ -65,6 +68,7 @@ std::optional<UrdfInertial> UrdfReader::inertial(const Element& element, const s
 void UrdfReader::tensor(const Element& element, const std::string& owner, UrdfInertial& out) {
   constexpr const char* kNames[6] = {"ixx", "ixy", "ixz", "iyy", "iyz", "izz"};
   constexpr bool kDiagonal[6] = {true, false, false, true, false, true};
+  check_attributes(element, {"ixx", "ixy", "ixz", "iyy", "iyz", "izz"});
   double parts[6] = {};
   bool good = true;
   for (int i = 0; i < 6; ++i) {
@@ -90,6 +94,8 @@ void UrdfReader::tensor(const Element& element, const std::string& owner, UrdfIn
 std::optional<UrdfShape> UrdfReader::shape(const Element& element, const std::string& owner) {
   UrdfShape out;
   out.line = element.GetLineNum();
+  check_attributes(element, {"name"});
+  if (name_of(element) == "collision") check_concave(element, owner);
   out.origin = origin(element, owner);
   const Element* geometry_element = only_child(element, "geometry", owner);
   const Element* kind = geometry_element ? geometry_element->FirstChildElement() : nullptr;
@@ -104,8 +110,11 @@ std::optional<UrdfShape> UrdfReader::shape(const Element& element, const std::st
                      fmt::format("Write one <{}> for each shape.", name_of(element)));
   }
   if (!geometry(*kind, owner, out)) return std::nullopt;
+  if (name_of(element) == "collision") check_concave(*kind, owner);
   if (const Element* material = child(element, "material")) {
+    check_attributes(*material, {"name"});
     if (const char* name = material->Attribute("name")) out.material = name;
+    if (const Element* texture = child(*material, "texture")) check_attributes(*texture, {"filename"});
     color(*material, owner, out.color, out.alpha);
   }
   return out;
@@ -128,14 +137,17 @@ bool UrdfReader::geometry(const Element& element, const std::string& owner, Urdf
   ShapeModel& shape = out.shape;
   if (kind == "mesh") return mesh_geometry(element, owner, out);
   if (kind == "sphere") {
+    check_attributes(element, {"radius"});
     shape.kind = ShapeKind::sphere;
     return positive(element, "radius", owner, shape.radius);
   }
   if (kind == "cylinder" || kind == "capsule") {
+    check_attributes(element, {"radius", "length"});
     shape.kind = kind == "cylinder" ? ShapeKind::cylinder : ShapeKind::capsule;
     return positive(element, "radius", owner, shape.radius) && positive(element, "length", owner, shape.height);
   }
   if (kind == "box") {
+    check_attributes(element, {"size"});
     shape.kind = ShapeKind::box;
     if (!element.Attribute("size")) {
       problems.error(element.GetLineNum(), fmt::format("{}: <box> has no size; left out", owner),
@@ -147,6 +159,7 @@ bool UrdfReader::geometry(const Element& element, const std::string& owner, Urdf
     return size.has_value();
   }
   if (kind == "plane") {
+    check_attributes(element, {"normal"});
     shape.kind = ShapeKind::plane;
     const Vec3 normal = normalized(vector(element, "normal", owner, kNormalRange).value_or(Vec3(0, 0, 1)));
     shape.normal = glm::length(normal) > 0.5 ? normal : Vec3(0, 0, 1);
@@ -159,6 +172,7 @@ bool UrdfReader::geometry(const Element& element, const std::string& owner, Urdf
 
 bool UrdfReader::mesh_geometry(const Element& element, const std::string& owner, UrdfShape& out) {
   out.shape.kind = ShapeKind::mesh;
+  check_attributes(element, {"filename", "scale"});
   const char* file = element.Attribute("filename");
   if (!file || !*file) {
     problems.error(element.GetLineNum(), fmt::format("{}: <mesh> names no file; left out", owner),

@@ -1,0 +1,151 @@
+// What a URDF says that has no effect, or another one than expected, is reported; quaternions are read.
+#include <cmath>
+#include <string>
+
+#include <gtest/gtest.h>
+
+#include "files.h"
+#include "import_text.h"
+#include "model/load_messages.h"
+#include "solids.h"
+
+namespace limber {
+namespace {
+
+using test::all_problems;
+using test::import_text;
+using test::says;
+
+TEST(Reported, QuaternionsTurnOrigins) {
+  const BodyModel m = import_text(R"(<robot name="r" version="1.1"><link name="a"/><link name="b"/>
+<joint name="j" type="fixed"><origin xyz="0 0 1" quat_xyzw="0 0 0.7071068 0.7071068"/><parent link="a"/><child link="b"/></joint></robot>)");
+  EXPECT_LT(test::angle_between(m.file_links[1].home.rotation, quat_euler(0, 0, kPi / 2)), 1e-7);
+  for (const Problem& p : m.problems) EXPECT_EQ(p.severity, Severity::note) << p.text;
+}
+
+TEST(Reported, QuaternionsTurnEveryOrigin) {
+  const BodyModel m = import_text(R"(<robot name="r"><link name="a"><inertial>
+<origin xyz="0 0 0" quat_xyzw="0.5 0.5 0.5 0.5"/><mass value="1"/><inertia ixx="1" ixy="0" ixz="0" iyy="2" iyz="0" izz="2.5"/></inertial>
+<collision><origin quat_xyzw="0.5 0.5 0.5 0.5"/><geometry><box size="1 2 3"/></geometry></collision></link></robot>)");
+  // x -> y -> z -> x
+  EXPECT_NEAR(m.file_links[0].tensor[1][1], 1, 1e-12);
+  EXPECT_NEAR(m.file_links[0].tensor[2][2], 2, 1e-12);
+  EXPECT_NEAR(m.file_links[0].tensor[0][0], 2.5, 1e-12);
+  test::expect_near(m.links[0].collisions[0].origin.rotation * Vec3(1, 0, 0), {0, 1, 0}, 1e-12);
+}
+
+TEST(Reported, BadQuaternions) {
+  const auto with = [](const char* origin) {
+    return import_text(std::string(R"(<robot name="r"><link name="a"/><link name="b"/>
+<joint name="j" type="fixed"><origin )") +
+                       origin + R"(/><parent link="a"/><child link="b"/></joint></robot>)");
+  };
+  EXPECT_TRUE(says(with("quat_xyzw=\"0 0 0 0\""), Severity::error, "no rotation", 2));
+  EXPECT_TRUE(says(with("quat_xyzw=\"0 0 1\""), Severity::error, "3 numbers, not 4", 2));
+  EXPECT_TRUE(says(with("quat_xyzw=\"0 0 0 2\""), Severity::note, "length 2", 2));
+  const BodyModel both = with("rpy=\"1 0 0\" quat_xyzw=\"0 0 0 1\"");
+  EXPECT_TRUE(says(both, Severity::warning, "both rpy and quat_xyzw; rpy ignored", 2)) << all_problems(both);
+  EXPECT_LT(test::angle_between(both.file_links[1].home.rotation, quat_identity()), 1e-12);
+}
+
+TEST(Reported, MisspelledAttributes) {
+  const BodyModel m = import_text(R"(<robot name="r"><link name="a"/><link name="b"/><link name="c"/>
+<joint name="j" type="revolute"><origin RPY="0 0 1"/><parent link="a"/><child link="b"/><axis xyz="0 0 1"/>
+<limit lower="-1" uper="1" effort="1" velocity="1"/></joint>
+<joint name="k" type="revolute"><parent link="a"/><child link="c"/><axis xyz="0 0 1"/>
+<limit lower="-1" uper="1" effort="1" velocity="1" drake:acceleration="4" xmlns:drake="x"/></joint></robot>)");
+  EXPECT_TRUE(says(m, Severity::warning, "<limit> has no attribute 'uper'; ignored in 2 places", 3)) << all_problems(m);
+  EXPECT_TRUE(says(m, Severity::warning, "<origin> has no attribute 'RPY'; ignored", 2)) << all_problems(m);
+  EXPECT_TRUE(says(m, Severity::note, "'drake:acceleration'", 5)) << all_problems(m);
+  bool hinted = false;
+  for (const Problem& p : m.problems) hinted = hinted || p.cure == "Did you mean 'upper'?";
+  EXPECT_TRUE(hinted) << all_problems(m);
+}
+
+TEST(Reported, UndefinedMaterials) {
+  const BodyModel m = import_text(R"(<robot name="r"><material name="red"><color rgba="1 0 0 1"/></material>
+<link name="a"><visual><geometry><sphere radius="1"/></geometry><material name="rde"/></visual>
+<visual><geometry><sphere radius="1"/></geometry><material name="rde"/></visual>
+<visual><geometry><sphere radius="1"/></geometry><material name="red"/></visual></link></robot>)");
+  EXPECT_TRUE(says(m, Severity::warning, "material 'rde' of 2 visuals is not defined", 2)) << all_problems(m);
+  std::size_t materials = 0;
+  for (const Problem& p : m.problems) materials += p.text.find("material") != std::string::npos ? 1u : 0u;
+  EXPECT_EQ(materials, 1u);
+}
+
+TEST(Reported, LinksWithoutCollisionAreCounted) {
+  const BodyModel m = import_text(R"(<robot name="r"><link name="base"/>
+<link name="a"><visual><geometry><sphere radius="1"/></geometry></visual></link><link name="b"/>
+<joint name="j" type="continuous"><parent link="base"/><child link="a"/><axis xyz="0 0 1"/></joint>
+<joint name="k" type="continuous"><parent link="base"/><child link="b"/><axis xyz="0 0 1"/></joint></robot>)");
+  EXPECT_TRUE(says(m, Severity::warning, "2 links have no collision geometry: a, b", 2)) << all_problems(m);
+}
+
+TEST(Reported, HullsThatFillAHollow) {
+  const test::Files files;
+  // a cup: 10 cm wide inside, walls of 1 cm
+  files.write("cup.stl",
+              test::binary_stl(test::turned({{0, 0}, {0.1, 0}, {0.1, 0.2}, {0.09, 0.2}, {0.09, 0.01}, {0, 0.01}}, 32)));
+  files.write("solid.stl", test::binary_stl(test::turned({{0, 0}, {0.1, 0}, {0.07, 0.2}, {0, 0.2}}, 32)));
+  const auto import = [&](const std::string& mesh) {
+    const std::string shape = "<collision><geometry><mesh filename=\"" + mesh + "\"/></geometry></collision>";
+    const std::string path =
+        files.write("robot.urdf", "<robot name=\"r\">\n<link name=\"a\">" + shape + shape + "</link></robot>");
+    const auto model = import_urdf(path);
+    return model ? **model : BodyModel{};
+  };
+  const BodyModel cup = import("cup.stl");
+  EXPECT_TRUE(says(cup, Severity::warning, "'cup' fills its hollows: ", 2)) << all_problems(cup);
+  EXPECT_TRUE(says(cup, Severity::warning, "… and 1 more of this kind", 2)) << all_problems(cup);
+  const BodyModel solid = import("solid.stl");
+  ASSERT_EQ(solid.links.size(), 1u);
+  EXPECT_EQ(all_problems(solid).find("hollow"), std::string::npos) << all_problems(solid);
+}
+
+TEST(Reported, ConcaveMeshes) {
+  const BodyModel m = import_text(R"(<robot name="r"><link name="a">
+<collision concave="yes"><geometry><box size="1 1 1"/></geometry></collision>
+<collision concave="no"><geometry><box size="1 1 1"/></geometry></collision>
+<collision><geometry><box size="1 1 1" concave="yes"/></geometry></collision></link></robot>)");
+  EXPECT_TRUE(says(m, Severity::warning, "link 'a': concave=\"yes\" is not supported", 2)) << all_problems(m);
+  EXPECT_TRUE(says(m, Severity::warning, "… and 1 more of this kind", 2)) << all_problems(m);
+}
+
+TEST(Reported, SelfCollideExcludesALink) {
+  const auto links = [](const std::string& gazebo) {
+    return import_text(R"(<robot name="r"><link name="a"/><link name="b"/>
+<joint name="j" type="continuous"><parent link="a"/><child link="b"/><axis xyz="0 0 1"/></joint>
+)" + gazebo + "</robot>");
+  };
+  const BodyModel one = links("<gazebo reference=\"b\"><selfCollide>false</selfCollide></gazebo>");
+  EXPECT_TRUE(one.links[0].self_collision);
+  EXPECT_FALSE(one.links[1].self_collision);
+  EXPECT_FALSE(links("<gazebo reference='b'><self_collide>0</self_collide></gazebo>").links[1].self_collision);
+  EXPECT_TRUE(links("<gazebo reference='b'><selfCollide>true</selfCollide></gazebo>").links[1].self_collision);
+  const BodyModel all = links(
+      "<gazebo><selfCollide>false</selfCollide></gazebo><gazebo reference='a'><selfCollide>1</selfCollide></gazebo>");
+  EXPECT_TRUE(all.links[0].self_collision);
+  EXPECT_FALSE(all.links[1].self_collision);
+  EXPECT_TRUE(says(links("<gazebo reference='zz'><selfCollide>false</selfCollide></gazebo>"), Severity::warning,
+                   "names no link", 3));
+  EXPECT_TRUE(says(links("<gazebo reference='a'><selfCollide>maybe</selfCollide></gazebo>"), Severity::warning,
+                   "<selfCollide> is 'maybe'", 3));
+}
+
+TEST(Reported, MessagesAreGroupedByKind) {
+  BodyModel m;
+  m.file = "robot.urdf";
+  for (int i = 0; i < 60; i++) {
+    m.problems.push_back({i + 1, Severity::warning, "joint 'j" + std::to_string(i) + "' has no axis", "Write one."});
+    m.problems.push_back({i + 1, Severity::note, "a note", "Nothing to do."});
+  }
+  m.problems.push_back({7, Severity::error, "link 'a' has no name", "Give it one."});
+  const std::vector<std::string> lines = load_messages(m);
+  ASSERT_EQ(lines.size(), 2u);
+  EXPECT_EQ(lines[0],
+            "robot.urdf:1: joint 'j0' has no axis … and 59 more of this kind (limber inspect lists them). Write one.");
+  EXPECT_EQ(lines[1], "robot.urdf:7: link 'a' has no name. Give it one.");
+}
+
+}  // namespace
+}  // namespace limber
