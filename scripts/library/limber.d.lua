@@ -166,11 +166,12 @@ function warn(...) end
 ---@field joints joint_list # read-only. In stream order; called, it walks those that a pattern matches.
 ---@field motors motor_list # read-only. In stream order; called, it walks those that a pattern matches.
 ---@field behaviors behavior_list # read-only. In the order in which they were attached.
+---@field excluded_pairs part[][] # read-only. Pairs of parts that are excluded from collision: `{ { a, b }, … }`.
 ---@field position vec3like # m, -10000 .. 10000. The root's link frame, world; setting it moves the whole body rigidly.
 ---@field rotation quat # The root's link frame, world: x y z w; setting it turns the whole body about the root.
 ---@field linear_velocity vec3like # m/s, -10000 .. 10000. The root's; setting it gives the whole body this motion.
 ---@field angular_velocity vec3like # rad/s, -10000 .. 10000. The root's; setting it turns the whole body about the root.
----@field self_collision boolean # default true. Whether its parts collide with each other; two that a joint connects never do.
+---@field self_collision boolean # default true. Whether its parts collide with each other; two that a joint connects never do, nor pairs of excluded_pairs.
 ---@field enabled boolean # False: out of the world, as health leaves a body that broke twice; reset enables.
 local body_ = {}
 
@@ -179,7 +180,7 @@ local body_ = {}
 ---@field rotation? quat # The root's link frame, world: x y z w; setting it turns the whole body about the root.
 ---@field linear_velocity? vec3like # m/s, -10000 .. 10000. The root's; setting it gives the whole body this motion.
 ---@field angular_velocity? vec3like # rad/s, -10000 .. 10000. The root's; setting it turns the whole body about the root.
----@field self_collision? boolean # default true. Whether its parts collide with each other; two that a joint connects never do.
+---@field self_collision? boolean # default true. Whether its parts collide with each other; two that a joint connects never do, nor pairs of excluded_pairs.
 ---@field enabled? boolean # False: out of the world, as health leaves a body that broke twice; reset enables.
 
 ---A part of that shape. Its pose is in the world, left out: the origin.
@@ -241,6 +242,16 @@ function body_:link(name) end
 ---@return body
 function body_:copy(name, opts) end
 
+---Excludes two parts of the body from collision with each other.
+---@param a part|string|integer
+---@param b part|string|integer
+function body_:exclude_pair(a, b) end
+
+---Lets two parts collide that exclude_pair, or an overlap at the home pose, excluded.
+---@param a part|string|integer
+---@param b part|string|integer
+function body_:include_pair(a, b) end
+
 ---Back to the start pose, at rest.
 function body_:reset() end
 
@@ -263,6 +274,9 @@ function body_:state_hash() end
 ---@field friction number # 0 .. 100, default 0.5. Coulomb friction; the values of two touching parts multiply.
 ---@field rolling_friction number # m, 0 .. 100, default 0. Resistance to rolling; the values of two touching parts are mixed.
 ---@field restitution number # 0 .. 1, default 0. What a bounce gives back; the values of two touching parts multiply.
+---@field self_collision boolean # default true. Whether it collides with other parts of its body.
+---@field collision_group integer # 0 .. 65535, default 1. The groups it is in, a bit each (16). Two parts collide if each one's group has a bit in the other's mask.
+---@field collision_mask integer # 0 .. 65535, default 65535. The groups it collides with, a bit each (16).
 ---@field report_contacts boolean # default false. Tell when this part begins to touch another.
 ---@field position vec3like # m, -1000000 .. 1000000. Origin of the link frame, world.
 ---@field rotation quat # Link frame, world: x y z w.
@@ -280,6 +294,9 @@ local part_ = {}
 ---@field friction? number # 0 .. 100, default 0.5. Coulomb friction; the values of two touching parts multiply.
 ---@field rolling_friction? number # m, 0 .. 100, default 0. Resistance to rolling; the values of two touching parts are mixed.
 ---@field restitution? number # 0 .. 1, default 0. What a bounce gives back; the values of two touching parts multiply.
+---@field self_collision? boolean # default true. Whether it collides with other parts of its body.
+---@field collision_group? integer # 0 .. 65535, default 1. The groups it is in, a bit each (16). Two parts collide if each one's group has a bit in the other's mask.
+---@field collision_mask? integer # 0 .. 65535, default 65535. The groups it collides with, a bit each (16).
 ---@field report_contacts? boolean # default false. Tell when this part begins to touch another.
 ---@field position? vec3like # m, -1000000 .. 1000000. Origin of the link frame, world.
 ---@field rotation? quat # Link frame, world: x y z w.

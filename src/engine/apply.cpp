@@ -29,6 +29,18 @@ class Keepsakes {
     for (const auto& part : body.parts()) keep(body, part->id(), part->name());
     for (const auto& joint : body.joints()) keep(body, joint->id(), joint->name());
     for (const auto& motor : body.motors()) keep(body, motor->id(), motor->name());
+    for (const PartPair& pair : body.pairs().list) {
+      pairs_.push_back({body.parts()[pair.a]->name(), body.parts()[pair.b]->name(), pair.edit});
+    }
+  }
+
+  // edits of pairs whose parts are still there
+  void give_pairs_to(Body& body) const {
+    for (const KeptPair& pair : pairs_) {
+      const Part* const a = body.find_part(pair.a);
+      const Part* const b = body.find_part(pair.b);
+      if (a != nullptr && b != nullptr) (void)body.edit_pair(*a, *b, pair.edit);
+    }
   }
 
   // rows of `leave` and velocities, which go with the posture, are left alone
@@ -48,6 +60,10 @@ class Keepsakes {
   }
 
  private:
+  struct KeptPair {
+    std::string a, b;
+    PairEdit edit;
+  };
   struct Keepsake {
     const Table* table;
     std::string name;
@@ -62,6 +78,7 @@ class Keepsakes {
   }
 
   std::vector<Keepsake> all_;
+  std::vector<KeptPair> pairs_;
 };
 
 class Applying {
@@ -168,6 +185,9 @@ class Applying {
       set_rows(described.joints()[i]->id(), live.joints()[i]->id(), d.joints[i]);
     for (std::size_t i = 0; i < d.motors.size(); i++)
       set_rows(described.motors()[i]->id(), live.motors()[i]->id(), d.motors[i]);
+    for (const PairDescription& pair : d.pairs) {
+      (void)live.edit_pair(*live.parts()[pair.a], *live.parts()[pair.b], pair.edit);
+    }
     move(live, described, d);
     return live;
   }
@@ -176,6 +196,7 @@ class Applying {
     const Keepsakes keepsakes(body);
     keep_behaviors(body, kept_behaviors_);
     Body& live = a_.world.rebuild_body(body, described, d.joints_start_anew);
+    keepsakes.give_pairs_to(live);
     keepsakes.give_to(store_, live.id(), "", d.rows);
     for (std::size_t i = 0; i < d.parts.size(); i++)
       keepsakes.give_to(store_, live.parts()[i]->id(), live.parts()[i]->name(), d.parts[i]);

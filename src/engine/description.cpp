@@ -70,6 +70,9 @@ BodyDescription body_of(const Body& body, const Shapes& shapes) {
   for (const auto& motor : body.motors()) {
     out.motors.push_back({joint_number[&motor->joint()], rows_of(store, motor->id())});
   }
+  for (const PartPair& pair : body.pairs().list) {
+    if (pair.edit != PairEdit::none) out.pairs.push_back({pair.a, pair.b, pair.edit});
+  }
   for (const Behavior* behavior : body.behaviors()) {
     out.behaviors.push_back({behavior->name(), behavior->type().name, behavior->type().table, behavior->setup(),
                              behavior->group() != nullptr, rows_of(store, behavior->id())});

@@ -55,6 +55,12 @@ struct MotorDescription {
   std::size_t joint = 0;
   SaidRows rows;
 };
+/// A pair of parts, by their places, that a script excluded from collision or included.
+struct PairDescription {
+  std::size_t a = 0;
+  std::size_t b = 0;
+  PairEdit edit = PairEdit::none;
+};
 /// A behaviour of a body; of a group's member only the rows count.
 struct BehaviorDescription {
   std::string name;
@@ -79,6 +85,7 @@ struct BodyDescription {
   std::vector<PartDescription> parts;
   std::vector<JointDescription> joints;
   std::vector<MotorDescription> motors;
+  std::vector<PairDescription> pairs;
   std::vector<BehaviorDescription> behaviors;
 };
 struct Description {

@@ -130,6 +130,30 @@ void compare_places(const BodyDescription& before, const BodyDescription& now, B
   }
 }
 
+const PairDescription* pair_named(const BodyDescription& body, std::string_view a, std::string_view b) {
+  const auto found = std::find_if(body.pairs.begin(), body.pairs.end(), [&](const PairDescription& pair) {
+    const std::string_view first = body.parts[pair.a].name;
+    const std::string_view second = body.parts[pair.b].name;
+    return (first == a && second == b) || (first == b && second == a);
+  });
+  return found == body.pairs.end() ? nullptr : &*found;
+}
+
+// pairs by the names of their parts: those whose edit differs, and those that are no longer edited
+void compare_pairs(const BodyDescription& before, const BodyDescription& now, BodyDifference& out) {
+  for (const PairDescription& pair : now.pairs) {
+    const PairDescription* const was = pair_named(before, now.parts[pair.a].name, now.parts[pair.b].name);
+    if (was == nullptr || was->edit != pair.edit) out.pairs.push_back(pair);
+  }
+  for (const PairDescription& pair : before.pairs) {
+    const PartDescription* const a = named(now.parts, before.parts[pair.a].name);
+    const PartDescription* const b = named(now.parts, before.parts[pair.b].name);
+    if (a == nullptr || b == nullptr || pair_named(now, a->name, b->name) != nullptr) continue;
+    out.pairs.push_back({static_cast<std::size_t>(a - now.parts.data()), static_cast<std::size_t>(b - now.parts.data()),
+                         PairEdit::none});
+  }
+}
+
 // of a thing that was not described before, what is said counts
 std::uint64_t rows_to_set(const SaidRows* before, const SaidRows& now) {
   return before == nullptr ? said_rows(now) : changed_rows(*before, now);
@@ -150,6 +174,7 @@ BodyDifference compare_bodies(const BodyDescription& before, const BodyDescripti
     const MotorDescription& motor = now.motors[i];
     set(out.motors, out.anew ? motor_of(before, now.joints[motor.joint].name) : &before.motors[i], motor.rows);
   }
+  compare_pairs(before, now, out);
   compare_places(before, now, out);
   return out;
 }
@@ -217,8 +242,8 @@ bool none(const std::vector<std::uint64_t>& rows) {
 }  // namespace
 
 bool BodyDifference::empty() const {
-  return before && !anew && rows == 0 && none(parts) && none(joints) && none(motors) && !position && !rotation &&
-         trees_along.empty() && trees_placed.empty() && !start;
+  return before && !anew && rows == 0 && none(parts) && none(joints) && none(motors) && pairs.empty() && !position &&
+         !rotation && trees_along.empty() && trees_placed.empty() && !start;
 }
 
 bool Difference::empty() const {
@@ -258,6 +283,7 @@ BodyDifference compare_stranger(const BodyDescription& stands, const BodyDescrip
   for (const PartDescription& part : now.parts) out.parts.push_back(said_rows(part.rows));
   for (const JointDescription& joint : now.joints) out.joints.push_back(said_rows(joint.rows));
   for (const MotorDescription& motor : now.motors) out.motors.push_back(said_rows(motor.rows));
+  out.pairs = now.pairs;
   out.position = now.start.said_position;
   out.rotation = now.start.said_rotation;
   for (std::size_t i = 0; i < now.parts.size(); i++) {

@@ -21,7 +21,8 @@ struct BodyDifference {
   std::vector<std::uint64_t> parts;   ///< To be set, for each of its parts, joints, motors now.
   std::vector<std::uint64_t> joints;
   std::vector<std::uint64_t> motors;
-  bool position = false;  ///< The root is to go where it is said now.
+  std::vector<PairDescription> pairs;  ///< To be set; none: its default.
+  bool position = false;               ///< The root is to go where it is said now.
   bool rotation = false;
   std::vector<std::size_t> trees_along;   ///< First parts of other trees that go with the root.
   std::vector<std::size_t> trees_placed;  ///< And of those that go where they are said now.

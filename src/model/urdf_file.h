@@ -12,7 +12,7 @@ namespace limber {
 
 struct UrdfOrigin {
   Vec3 xyz{0, 0, 0};
-  Vec3 rpy{0, 0, 0};         ///< Fixed axes, radians.
+  Vec3 rpy{0, 0, 0};           ///< Fixed axes, radians.
   std::optional<Quat> quat{};  ///< Unit; from `quat_xyzw`, where it replaces `rpy`.
 
   Pose pose() const { return {xyz, quat ? *quat : quat_euler(rpy.x, rpy.y, rpy.z)}; }

@@ -7,6 +7,7 @@
 #include "base/log.h"
 #include "base/text.h"
 #include "model/hull.h"
+#include "model/load_messages.h"
 #include "model/mass_properties.h"
 #include "script/context.h"
 
@@ -50,10 +51,7 @@ void say_place(const ScriptContext& c, NodeId id, const BuildOptions& place) {
 }
 
 void say_problems(const BodyModel& model) {
-  for (const Problem& problem : model.problems) {
-    if (problem.severity == Severity::note) continue;
-    log_warning("{}:{}: {} {}", model.file, problem.line, problem.text, problem.cure);
-  }
+  for (const std::string& line : load_messages(model)) log_warning("{}", line);
 }
 
 // hull of points that a script gave, or of a file's mesh with another count of vertices
@@ -137,6 +135,42 @@ std::int32_t remove_body(void* c, std::int32_t slot, std::int32_t generation) {
   Body* body = thing_of<Body>(context, id_of(slot, generation));
   if (body == nullptr) return kGone;
   context.world->remove_body(*body);
+  return kOk;
+}
+
+std::int32_t edit_pair(void* c, std::int32_t slot, std::int32_t generation, std::int32_t a_slot,
+                       std::int32_t a_generation, std::int32_t b_slot, std::int32_t b_generation, std::int32_t edit) {
+  ScriptContext& context = context_of(c);
+  Body* const body = thing_of<Body>(context, id_of(slot, generation));
+  const Part* const a = thing_of<Part>(context, id_of(a_slot, a_generation));
+  const Part* const b = thing_of<Part>(context, id_of(b_slot, b_generation));
+  if (body == nullptr || a == nullptr || b == nullptr) return kGone;
+  const Result<void> done = body->edit_pair(*a, *b, static_cast<PairEdit>(edit));
+  if (!done) return context.refuse(done.error());
+  if (static_cast<PairEdit>(edit) != PairEdit::included) return kOk;
+  for (const auto& joint : body->joints()) {
+    const bool joined =
+        (&joint->parent() == a && &joint->child() == b) || (&joint->parent() == b && &joint->child() == a);
+    if (!joined) continue;
+    log_warning("body '{}': include_pair('{}', '{}') has no effect while joint '{}' connects the two", body->name(),
+                a->name(), b->name(), joint->name());
+    break;
+  }
+  return kOk;
+}
+
+std::int32_t excluded_pair(void* c, std::int32_t slot, std::int32_t generation, std::int32_t index) {
+  ScriptContext& context = context_of(c);
+  const Body* const body = thing_of<Body>(context, id_of(slot, generation));
+  if (body == nullptr) return kGone;
+  std::int32_t count = 0;
+  for (const PartPair& pair : body->pairs().list) {
+    if (!pair.excluded() || count++ != index) continue;
+    context.answer.number[0] = pair.a;
+    context.answer.number[1] = pair.b;
+    return kOk;
+  }
+  context.answer.number[0] = count;
   return kOk;
 }
 

@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include "base/hash.h"
+#include "base/log.h"
 #include "base/text.h"
 #include "sim/behavior_list.h"
 #include "sim/world.h"
@@ -53,7 +54,8 @@ const Table& Body::table() {
                    "The root's; setting it turns the whole body about the root."))),
           effect<&Body::effect_self_collision>(
               boolean("self_collision", true,
-                      "Whether its parts collide with each other; two that a joint connects never do.")),
+                      "Whether its parts collide with each other; two that a joint connects never do, nor pairs of "
+                      "excluded_pairs.")),
           live(state(effect<&Body::effect_enabled>(boolean(
               "enabled", true, "False: out of the world, as health leaves a body that broke twice; reset enables.")))),
           act<&Body::act_reset>(action("reset", 0, 0, "Back to the start pose, at rest.")),
@@ -201,8 +203,14 @@ void Body::build(const std::shared_ptr<const BodyModel>& model, const BuildOptio
     const LinkModel& link = model->links[i];
     parts_.push_back(
         std::make_unique<Part>(*this, part_group_, link.name, geometries[i], link.inertial.mass, moved * link.start));
+    if (!link.self_collision) store().tell(parts_.back()->id(), Part::table().at("self_collision"))[0] = 0;
     parts_.back()->settle();
   }
+  for (const Overlap& overlap : model->overlaps) {
+    (void)pairs_.set_overlaps(static_cast<std::size_t>(overlap.a), static_cast<std::size_t>(overlap.b));
+  }
+  pairs_.checked = parts_.size();
+  apply_pairs();
   for (const JointModel& m : model->joints) {
     JointSpec spec{m.type, m.frame_in_parent, m.frame_in_child, m.limited, m.lower, m.upper, m.friction, {}};
     if (m.mimic >= 0)
@@ -249,6 +257,8 @@ void Body::build_copy(const Body& source) {
   }
   copy_values(source.id_, id_, table());
   planned_ = source.planned_;
+  pairs_ = source.pairs_;
+  apply_pairs();
   // to the bit: what the store tells of a pose has gone through a quaternion
   for (std::size_t i = 0; i < parts_.size(); i++) {
     parts_[i]->settle();
@@ -309,16 +319,17 @@ void Body::effect_enabled() {
 // in one place, and there each would meet all others.
 void Body::enter() {
   if (!in_world_) return;
-  const bool parts_came = entered_parts_ < parts_.size();
   for (; entered_parts_ < parts_.size(); entered_parts_++) parts_[entered_parts_]->enter();
-  if (parts_came) effect_self_collision();
   for (; entered_joints_ < joints_.size(); entered_joints_++) joints_[entered_joints_]->enter();
 }
 
 void Body::effect_self_collision() {
-  const bool collide = store().values(id_, table().at("self_collision"))[0] != 0;
-  const int group = collide ? -1 : static_cast<int>(id_.slot);
-  for (const auto& part : parts_) world_.bullet().set_apart(part->rigid(), group);
+  for (const auto& part : parts_) part->effect_collision();
+}
+
+bool Body::self_collision() const {
+  static const Row& row = table().at("self_collision");
+  return store().values(id_, row)[0] != 0;
 }
 
 void Body::reset() {
@@ -396,9 +407,25 @@ std::uint64_t Body::state_hash(std::uint64_t hash) const {
     add_kept(joint->id(), Joint::table());
   }
   for (const auto& motor : motors_) add_kept(motor->id(), Motor::table());
+  for (const PartPair& pair : pairs_.list) {
+    numbers.add(static_cast<double>(pair.a), static_cast<double>(pair.b), pair.excluded() ? 1 : 0);
+  }
   hash = numbers.value();
   for (const Behavior* behavior : behaviors_) hash = behavior->state_hash(hash);
   return hash;
+}
+
+bool Body::is_static() const {
+  return !parts_.empty() &&
+         std::all_of(parts_.begin(), parts_.end(), [](const auto& part) { return part->is_static(); });
+}
+
+void Body::report_static_velocity(std::string_view what) {
+  if (std::exchange(reported_static_velocity_, true)) return;
+  log_warning(
+      "body '{}': {} static (mass 0), so a velocity has no effect; ignored (reported once). Give a mass, or set the "
+      "position.",
+      name(), what);
 }
 
 void Body::read_position(double* out) const { put(out, pose().position); }
@@ -417,17 +444,24 @@ void Body::write_rotation(const double* in) { set_pose({pose().position, quat_xy
 void Body::read_linear_velocity(double* out) const { put(out, parts_.empty() ? Vec3(0) : root()->linear_velocity()); }
 
 void Body::write_linear_velocity(const double* in) {
-  for (const auto& part : parts_) part->set_velocity(vec3_at(in), part->angular_velocity());
+  if (is_static()) return report_static_velocity("its parts are");
+  for (const auto& part : parts_) {
+    if (!part->is_static()) part->set_velocity(vec3_at(in), part->angular_velocity());
+  }
 }
 
 void Body::read_angular_velocity(double* out) const { put(out, parts_.empty() ? Vec3(0) : root()->angular_velocity()); }
 
 void Body::write_angular_velocity(const double* in) {
   if (parts_.empty()) return;
+  if (is_static()) return report_static_velocity("its parts are");
   const Vec3 omega = vec3_at(in);
   const Vec3 pivot = root()->center();
   const Vec3 velocity = root()->linear_velocity();
-  for (const auto& part : parts_) part->set_velocity(velocity + glm::cross(omega, part->center() - pivot), omega);
+  for (const auto& part : parts_) {
+    if (part->is_static()) continue;
+    part->set_velocity(velocity + glm::cross(omega, part->center() - pivot), omega);
+  }
 }
 
 Result<void> Body::act_reset(std::span<const double>) {

@@ -13,6 +13,7 @@
 #include "sim/joint.h"
 #include "sim/motor.h"
 #include "sim/part.h"
+#include "sim/part_pairs.h"
 #include "sim/shape.h"
 
 namespace limber {
@@ -61,6 +62,19 @@ class Body {
                            const Vec3& axis);
   /// One motor a joint; a fixed joint takes none.
   Result<Motor*> add_motor(Joint& joint);
+
+  /// Pairs of its parts that overlap or were edited. Pairs excluded from collision by default: a model's that overlap
+  /// with all joints at 0, and, of other parts, those that overlap in the first tick.
+  const PartPairs& pairs() const { return pairs_; }
+  bool excludes(const Part& a, const Part& b) const;
+  /// Excludes a pair of its parts from collision, or includes it, or restores its default; from the next step on.
+  /// Errors: a part of another body, twice the same part.
+  Result<void> edit_pair(const Part& a, const Part& b, PairEdit edit);
+  bool self_collision() const;
+  /// Whether it has parts and none of them moves.
+  bool is_static() const;
+  /// Warns once that a velocity has no effect; `what`: "part 'floor' is".
+  void report_static_velocity(std::string_view what);
 
   /// The root's link frame. Setting moves the whole body rigidly; velocities stay.
   Pose pose() const;
@@ -111,6 +125,11 @@ class Body {
   void settle_joints();
   void effect_enabled();
   void effect_self_collision();
+  void set_pair(std::size_t a, std::size_t b, PairEdit edit);
+  void apply_pair(std::size_t a, std::size_t b);
+  void apply_pairs();
+  bool has_unchecked_parts() const { return pairs_.checked < parts_.size(); }
+  void find_overlaps();
   void read_position(double* out) const;
   void write_position(const double* in);
   void read_rotation(double* out) const;
@@ -132,11 +151,13 @@ class Body {
   std::vector<Motor*> followers_;
   std::vector<Behavior*> behaviors_;
   std::uint32_t structure_ = 0;  // counts what is added: behaviours then look for their targets anew
-  Pose planned_;                 // while there is no part
+  PartPairs pairs_;
+  Pose planned_;  // while there is no part
   bool in_world_ = true;
   std::size_t entered_parts_ = 0;  // the first so many are in Bullet's world
   std::size_t entered_joints_ = 0;
   bool moved_ = false;
+  bool reported_static_velocity_ = false;
   bool fresh_ = true;  // made since the last step: where it is then is its start pose
 
   // health: the pose after the last good tick, and whether it was needed already

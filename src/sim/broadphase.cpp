@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "base/prefetch.h"
+#include "sim/collision_filter.h"
 
 namespace limber {
 namespace {
@@ -95,7 +96,7 @@ bool may_collide(const btBroadphaseProxy& a, const btBroadphaseProxy& b) {
   if ((b.m_collisionFilterGroup & a.m_collisionFilterMask) == 0) return false;
   const auto& first = *static_cast<const btCollisionObject*>(a.m_clientObject);
   const auto& second = *static_cast<const btCollisionObject*>(b.m_clientObject);
-  if (first.getUserIndex2() >= 0 && first.getUserIndex2() == second.getUserIndex2()) return false;
+  if (!CollisionFilter::of(first).accepts(CollisionFilter::of(second))) return false;
   return first.checkCollideWith(&second) && second.checkCollideWith(&first);
 }
 

@@ -71,6 +71,7 @@ void place_mass(Geometry& geometry, const Inertial& inertial) {
 
 std::shared_ptr<const Geometry> make_geometry(const std::vector<PlacedShape>& shapes, const Inertial& inertial) {
   auto geometry = std::make_shared<Geometry>();
+  geometry->placed = shapes;
   std::vector<Inertial> solids;
   for (const PlacedShape& placed : shapes) {
     if (placed.shape.kind != ShapeKind::plane) solids.push_back(moved(solid_of(placed.shape), placed.origin));

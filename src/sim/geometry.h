@@ -14,9 +14,10 @@ struct Geometry {
   std::shared_ptr<btCollisionShape> shape;
   std::vector<std::shared_ptr<btCollisionShape>> children;  ///< Kept alive for `shape`.
   std::vector<std::shared_ptr<const MeshModel>> meshes;
-  Pose frame;            ///< The centre-of-mass frame in the link's frame.
-  Vec3 unit_inertia{0};  ///< Principal moments for a mass of 1 kg, m².
-  double volume = 0;     ///< m³; 0 for a plane.
+  std::vector<PlacedShape> placed;  ///< What it was made of, in the link's frame.
+  Pose frame;                       ///< The centre-of-mass frame in the link's frame.
+  Vec3 unit_inertia{0};             ///< Principal moments for a mass of 1 kg, m².
+  double volume = 0;                ///< m³; 0 for a plane.
 };
 
 /// Geometry of a link from its collision shapes and its inertial. An inertial without mass: centre and tensor come

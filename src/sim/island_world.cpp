@@ -127,11 +127,25 @@ void IslandWorld::removeRigidBody(btRigidBody* body) {
   btDiscreteDynamicsWorld::removeRigidBody(body);
 }
 
-void IslandWorld::set_apart(btCollisionObject& object, int group) {
-  if (object.getUserIndex2() == group) return;
+void IslandWorld::set_filter(btCollisionObject& object, const CollisionFilter& filter) {
+  if (filter.store(object)) look_anew(object);
+}
+
+// Bullet's lists may hold an object more than once: each entry counts, those of joints too.
+void IslandWorld::exclude_pair(btCollisionObject& a, btCollisionObject& b) {
   const BulletMemory::Scope scope(memory);
-  object.setUserIndex2(group);
-  if (object.getBroadphaseHandle() != nullptr) broadphase->look_anew(object.getBroadphaseHandle());
+  a.setIgnoreCollisionCheck(&b, true);
+  b.setIgnoreCollisionCheck(&a, true);
+  look_anew(a);
+  look_anew(b);
+}
+
+void IslandWorld::include_pair(btCollisionObject& a, btCollisionObject& b) {
+  const BulletMemory::Scope scope(memory);
+  a.setIgnoreCollisionCheck(&b, false);
+  b.setIgnoreCollisionCheck(&a, false);
+  look_anew(a);
+  look_anew(b);
 }
 
 void IslandWorld::removeConstraint(btTypedConstraint* constraint) {
@@ -149,9 +163,14 @@ void IslandWorld::removeConstraint(btTypedConstraint* constraint) {
 
 // whether its parts may collide has changed
 void IslandWorld::look_anew(btTypedConstraint& joint) {
-  for (btRigidBody* body : {&joint.getRigidBodyA(), &joint.getRigidBodyB()}) {
-    if (body->getBroadphaseHandle() != nullptr) broadphase->look_anew(body->getBroadphaseHandle());
-  }
+  look_anew(joint.getRigidBodyA());
+  look_anew(joint.getRigidBodyB());
+}
+
+void IslandWorld::look_anew(btCollisionObject& object) {
+  if (object.getBroadphaseHandle() == nullptr) return;
+  const BulletMemory::Scope scope(memory);
+  broadphase->look_anew(object.getBroadphaseHandle());
 }
 
 // Islands' own work, and that of what stands nobody's: solve_batch().

@@ -10,6 +10,7 @@
 #include "sim/broadphase.h"
 #include "sim/bullet.h"
 #include "sim/bullet_memory.h"
+#include "sim/collision_filter.h"
 #include "sim/contact_sweep.h"
 #include "sim/island_direct.h"
 #include "sim/joint_block.h"
@@ -115,8 +116,12 @@ class IslandWorld : private WorldParts, public btDiscreteDynamicsWorld {
   void addRigidBody(btRigidBody* body, int group, int mask) override;
   void removeRigidBody(btRigidBody* body) override;
 
-  /// Objects of one group, >= 0, don't collide with each other from now on; -1: of none.
-  void set_apart(btCollisionObject& object, int group);
+  /// With which other objects this one may collide, from the next step on.
+  void set_filter(btCollisionObject& object, const CollisionFilter& filter);
+  /// Keeps two objects from colliding, from the next step on, or lets them collide again; independent of joints that
+  /// connect them. Calls must alternate: each `exclude` needs one `include`.
+  void exclude_pair(btCollisionObject& a, btCollisionObject& b);
+  void include_pair(btCollisionObject& a, btCollisionObject& b);
 
   /// Joints' rates anew, where velocities were changed in an internal step's callback.
   void refresh_joints();
@@ -151,6 +156,7 @@ class IslandWorld : private WorldParts, public btDiscreteDynamicsWorld {
   template <class Object, class Work>
   void for_each(const btAlignedObjectArray<Object*>& objects, Work&& work);
   void look_anew(btTypedConstraint& joint);
+  void look_anew(btCollisionObject& object);
   int place_of(const btCollisionObject& object) const { return places_[object.getWorldArrayIndex()]; }
   static int root_of(btAlignedObjectArray<int>& above, int place);
   static void unite(btAlignedObjectArray<int>& above, int a, int b);

@@ -45,6 +45,14 @@ const Table& Part::table() {
                                                "Resistance to rolling; the values of two touching parts are mixed.")),
           effect<&Part::effect_surface>(number("restitution", "", 0, 0, 1,
                                                "What a bounce gives back; the values of two touching parts multiply.")),
+          effect<&Part::effect_collision>(
+              boolean("self_collision", true, "Whether it collides with other parts of its body.")),
+          effect<&Part::effect_collision>(
+              integer("collision_group", 1, 0, 65535,
+                      "The groups it is in, a bit each (16). Two parts collide if each one's group has a bit in the "
+                      "other's mask.")),
+          effect<&Part::effect_collision>(
+              integer("collision_mask", 65535, 0, 65535, "The groups it collides with, a bit each (16).")),
           effect<&Part::effect_reports>(
               boolean("report_contacts", false, "Tell when this part begins to touch another.")),
           live(state(effect<&Part::effect_pose>(
@@ -281,9 +289,27 @@ void Part::effect_pose() {
 }
 
 void Part::effect_velocity() {
-  if (is_static_) return;
+  if (is_static_) {
+    if (linear_velocity() != Vec3(0) || angular_velocity() != Vec3(0)) {
+      body_.report_static_velocity(fmt::format("part '{}' is", name()));
+    }
+    return;
+  }
   rigid_->setLinearVelocity(to_bt(linear_velocity()));
   rigid_->setAngularVelocity(to_bt(angular_velocity()));
+}
+
+void Part::effect_collision() {
+  static const Row& group = table().at("collision_group");
+  static const Row& mask = table().at("collision_mask");
+  static const Row& own = table().at("self_collision");
+  const Store& store = body_.store();
+  CollisionFilter filter;
+  filter.group = static_cast<std::uint16_t>(store.values(id_, group)[0]);
+  filter.mask = static_cast<std::uint16_t>(store.values(id_, mask)[0]);
+  filter.body = static_cast<std::int32_t>(body_.id().slot);
+  filter.self_collision = body_.self_collision() && store.values(id_, own)[0] != 0;
+  body_.world().bullet().set_filter(*rigid_, filter);
 }
 
 void Part::effect_reports() {

@@ -91,6 +91,8 @@ class Part {
   /// Pose and velocity of the store into Bullet: the effects of their rows, and of health.
   void effect_pose();
   void effect_velocity();
+  /// Its group, mask, and whether it collides with its own body.
+  void effect_collision();
 
  private:
   void effect_mass();

@@ -215,8 +215,10 @@ void World::step() {
   settle();
   for (const auto& body : bodies_) {
     if (std::exchange(body->fresh_, false)) body->take_start_pose();
+    if (body->has_unchecked_parts()) body->find_overlaps();
     if (body->in_world() && !panic_.on()) body->follow_leaders();
   }
+  log_overlaps();
   if (panic_.on()) loads_.drop();
   overlay_.take_loads(loads_);
   loads_.push();

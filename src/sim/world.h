@@ -140,6 +140,8 @@ class World {
   void effect_panic_motors() { panic_.renew(); }
   void settle_healed();
   void tell_bodies();
+  void report_overlap(const Body& body, const Part& a, const Part& b, double depth);
+  void log_overlaps();
   void heal(Body& body, const Part& part, const char* what);
   static void after_internal_step(btDynamicsWorld* bullet, btScalar h);
   Result<void> name_is_free(NodeId group, std::string_view kind, std::string_view name) const;
@@ -173,7 +175,9 @@ class World {
   std::uint64_t health_events_ = 0;
   bool reset_asked_ = false;
   bool panic_asked_ = false;
-  bool healed_ = false;  // a body, in this tick
+  bool healed_ = false;                // a body, in this tick
+  std::size_t overlaps_reported_ = 0;  // since log_overlaps()
+  std::string overlap_text_;           // the first of them
 };
 
 }  // namespace limber

@@ -45,6 +45,7 @@ Body& World::rebuild_body(Body& body, const Body& described, const std::vector<b
   Body& fresh = **made;
   fresh.take_start_pose(described);
   fresh.fresh_ = false;
+  if (fresh.has_unchecked_parts()) fresh.find_overlaps();  // where they are described, not where they moved to
   posture.give_to(fresh, joints_start_anew);
   return fresh;
 }

@@ -95,7 +95,10 @@ struct Cloud {
     place(any());
     const int what = std::uniform_int_distribution<int>(0, 5)(random);
     btRigidBody& one = *bodies[static_cast<std::size_t>(any())];
-    if (what == 0) world.set_apart(one, std::uniform_int_distribution<int>(-1, 2)(random));
+    if (what == 0) {
+      const auto bits = [&] { return static_cast<std::uint16_t>(std::uniform_int_distribution<int>(1, 7)(random)); };
+      world.set_filter(one, {bits(), bits(), std::uniform_int_distribution<int>(-1, 2)(random), random() % 2 == 0});
+    }
     if (what == 1) floor_at().setRotation(btQuaternion(between(-0.3, 0.3), between(-0.3, 0.3), 0));
     if (what == 2) floor_at().setOrigin({0, 0, between(-0.4, 0.4)});
     if (what == 3) join_or_part();
@@ -129,7 +132,10 @@ struct Cloud {
     const btRigidBody& b = *bodies[k];
     if (!a.isInWorld() || !b.isInWorld()) return false;
     if (a.isStaticObject() && b.isStaticObject()) return false;
-    if (a.getUserIndex2() >= 0 && a.getUserIndex2() == b.getUserIndex2()) return false;
+    const CollisionFilter of_a = CollisionFilter::of(a);
+    const CollisionFilter of_b = CollisionFilter::of(b);
+    if ((of_a.group & of_b.mask) == 0 || (of_b.group & of_a.mask) == 0) return false;
+    if (of_a.body >= 0 && of_a.body == of_b.body && !(of_a.self_collision && of_b.self_collision)) return false;
     return !joints.contains({static_cast<int>(i), static_cast<int>(k)});
   }
   // metres between the two as the broadphase sees them; below 0: they overlap

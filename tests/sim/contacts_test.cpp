@@ -111,7 +111,7 @@ TEST(Contacts, JoinedPartsDoNotTouchOthersOfTheBodyMay) {
   Part& b = s.reporting(s.part(body, box_model(Vec3(0.2)), 1, {{0.1, 0, 0}, quat_identity()}));
   (void)body.add_joint("j", a, b, JointType::revolute, {0.05, 0, 0}, {0, 1, 0}).value();
   EXPECT_TRUE(s.events(10).empty());
-  s.part(body, box_model(Vec3(0.2)), 1, {{-0.15, 0, 0}, quat_identity()});
+  s.part(body, box_model(Vec3(0.2)), 1, {{-0.2, 0, 0}, quat_identity()});
   EXPECT_EQ(s.events(10).size(), 1u);
 }
 

@@ -1,4 +1,6 @@
 // What the rows of parts do, as numbers measured in the world.
+#include <functional>
+
 #include "sim/row_effects.h"
 #include "sim/stage.h"
 
@@ -170,6 +172,56 @@ void angular_velocity() {
   }
 }
 
+// a ball falls on a ball below; `prepare` keeps the two from colliding
+bool falls_through(bool one_body, const std::function<void(Stage&, Part& ball, Part& below)>& prepare) {
+  Stage s;
+  s.gravity({0, 0, -10});
+  Body& body = s.body("two");
+  Part& below = s.part(body, sphere_model(0.1), 0);
+  Part& ball = one_body ? s.part(body, sphere_model(0.1), 1, {{0, 0, 0.3}, quat_identity()})
+                        : s.lone(sphere_model(0.1), 1, {{0, 0, 0.3}, quat_identity()});
+  prepare(s, ball, below);
+  s.ticks(30);
+  // half a second: 1.25 m of free fall
+  if (ball.pose().position.z > 0) return false;
+  EXPECT_NEAR(ball.pose().position.z, 0.3 - 1.25, 0.02);
+  return true;
+}
+
+void part_self_collision() {
+  const auto none = [](Stage& s, Part& ball, Part&) { s.set(ball.id(), "self_collision", {0}); };
+  EXPECT_TRUE(falls_through(true, none));
+  EXPECT_FALSE(falls_through(false, none));
+  EXPECT_TRUE(falls_through(true, [](Stage& s, Part&, Part& below) { s.set(below.id(), "self_collision", {0}); }));
+  EXPECT_FALSE(falls_through(true, [](Stage&, Part&, Part&) {}));
+}
+
+void collision_group() {
+  EXPECT_TRUE(falls_through(false, [](Stage& s, Part& ball, Part& below) {
+    s.set(ball.id(), "collision_group", {4});
+    s.set(below.id(), "collision_mask", {1 + 2 + 8});
+  }));
+  EXPECT_FALSE(falls_through(false, [](Stage& s, Part& ball, Part& below) {
+    s.set(ball.id(), "collision_group", {4});
+    s.set(below.id(), "collision_mask", {4});
+  }));
+}
+
+// a change while the ball rests on the other one acts at the next step
+void collision_mask() {
+  EXPECT_TRUE(falls_through(false, [](Stage& s, Part& ball, Part&) { s.set(ball.id(), "collision_mask", {0}); }));
+  Stage s;
+  s.gravity({0, 0, -10});
+  s.floor();
+  Part& ball = s.lone(sphere_model(0.1), 1, {{0, 0, 0.1}, quat_identity()});
+  s.ticks(20);
+  EXPECT_NEAR(ball.pose().position.z, 0.1, 0.002);
+  const double rest = ball.pose().position.z;
+  s.set(ball.id(), "collision_mask", {65534});
+  s.ticks(6);
+  EXPECT_NEAR(ball.pose().position.z, rest - 10.0 / 240 / 240 * 24 * 25 / 2, 1e-5);
+}
+
 }  // namespace
 
 void add_part_effects(RowEffects& effects) {
@@ -179,6 +231,9 @@ void add_part_effects(RowEffects& effects) {
   effects[{"Part", "friction"}] = friction;
   effects[{"Part", "rolling_friction"}] = rolling_friction;
   effects[{"Part", "restitution"}] = restitution;
+  effects[{"Part", "self_collision"}] = part_self_collision;
+  effects[{"Part", "collision_group"}] = collision_group;
+  effects[{"Part", "collision_mask"}] = collision_mask;
   effects[{"Part", "report_contacts"}] = report_contacts;
   effects[{"Part", "position"}] = position;
   effects[{"Part", "rotation"}] = rotation;

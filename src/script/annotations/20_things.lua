@@ -9,6 +9,7 @@
 ---@field joints joint_list # read-only. In stream order; called, it walks those that a pattern matches.
 ---@field motors motor_list # read-only. In stream order; called, it walks those that a pattern matches.
 ---@field behaviors behavior_list # read-only. In the order in which they were attached.
+---@field excluded_pairs part[][] # read-only. Pairs of parts that are excluded from collision: `{ { a, b }, … }`.
 ---@rows body
 local body_ = {}
 
@@ -73,6 +74,16 @@ function body_:link(name) end
 ---@param opts? body_opts
 ---@return body
 function body_:copy(name, opts) end
+
+---Excludes two parts of the body from collision with each other.
+---@param a part|string|integer
+---@param b part|string|integer
+function body_:exclude_pair(a, b) end
+
+---Lets two parts collide that exclude_pair, or an overlap at the home pose, excluded.
+---@param a part|string|integer
+---@param b part|string|integer
+function body_:include_pair(a, b) end
 
 ---@action body reset
 function body_:reset() end

@@ -4,6 +4,7 @@
 ---@class sim
 ---@field alive boolean # read-only. Always true.
 ---@field bodies body_list # read-only. In stream order; called, it walks those that a pattern matches.
+---@field collision_groups string[] # Names of the 16 collision groups, in order of their bits; set at the top level.
 ---@rows sim
 sim = {}
 

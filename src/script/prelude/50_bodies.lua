@@ -141,6 +141,63 @@ method(body, "copy", function(h, name, opts)
   return finish_making(api.copy_body(ctx, h.slot_, h.generation_, name, #name), body, opts, {}, h)
 end)
 
+-- pairs of parts that don't collide with each other
+local function edit_pair(name, edit)
+  method(body, name, function(h, a, b)
+    a, b = P.find_in(h, parts, a), P.find_in(h, parts, b)
+    P.check(api.edit_pair(ctx, h.slot_, h.generation_, a.slot_, a.generation_, b.slot_, b.generation_, edit), P.gone, h)
+  end)
+end
+edit_pair("exclude_pair", 1)
+edit_pair("include_pair", 2)
+body.getters.excluded_pairs = function(h)
+  if api.excluded_pair(ctx, h.slot_, h.generation_, -1) ~= 0 then P.gone(h) end
+  local pairs_of_parts = {}
+  for i = 1, number[0] do
+    api.excluded_pair(ctx, h.slot_, h.generation_, i - 1)
+    local a, b = number[0], number[1]
+    api.list_item(ctx, h.slot_, h.generation_, parts, a)
+    local first = P.answered()
+    api.list_item(ctx, h.slot_, h.generation_, parts, b)
+    pairs_of_parts[i] = { first, P.answered() }
+  end
+  return pairs_of_parts
+end
+
+-- collision groups: a number with a bit each, or names that the scene gives the bits
+P.collision_groups = {}
+local function group_bits(h, row, value)
+  if type(value) == "number" then return value end
+  if type(value) == "string" then value = { value } end
+  if type(value) ~= "table" then
+    fail("%s: '%s' takes a number, a name of sim.collision_groups, or a list of names, not %s", P.label(h), row,
+      P.describe(value))
+  end
+  local bits = {}
+  for _, name in ipairs(value) do
+    local found
+    for i, known in ipairs(P.collision_groups) do
+      if known == name then found = i end
+    end
+    if not found then
+      if #P.collision_groups == 0 then
+        fail("%s: '%s' can't take names yet; name the groups first: sim.collision_groups = { 'robot', 'floor' }",
+          P.label(h), row)
+      end
+      fail("%s: sim.collision_groups has no '%s'%s", P.label(h), tostring(name),
+        P.hint(tostring(name), P.collision_groups))
+    end
+    bits[found] = true
+  end
+  local sum = 0
+  for i in pairs(bits) do sum = sum + 2 ^ (i - 1) end
+  return sum
+end
+for _, row in ipairs { "collision_group", "collision_mask" } do
+  local set = part.setters[row]
+  part.setters[row] = function(h, value) set(h, group_bits(h, row, value)) end
+end
+
 method(body, "state_hash", function(h)
   api.state_hash(ctx, h.slot_, h.generation_)
   return P.text()

@@ -29,6 +29,26 @@ method("add_body", function(_, name, opts)
   return P.finish_making(api.add_body(ctx, name, #name), classes.body, opts, {})
 end)
 
+-- names of the bits of collision groups, for scripts
+class.getters.collision_groups = function()
+  local names = {}
+  for i, name in ipairs(P.collision_groups) do names[i] = name end
+  return names
+end
+class.setters.collision_groups = function(_, names)
+  if P.answer.top_level == 0 then
+    fail("sim.collision_groups is set at the top level of the scene, so that all parts know the same names")
+  end
+  if type(names) ~= "table" or #names > 16 then fail("sim.collision_groups is a list of at most 16 names") end
+  local seen, list = {}, {}
+  for i, name in ipairs(names) do
+    P.want_text(name, "sim.collision_groups: name " .. i)
+    if seen[name] then fail("sim.collision_groups: '%s' is there twice", name) end
+    seen[name], list[i] = true, name
+  end
+  P.collision_groups = list
+end
+
 -- shapes
 local numbers = ffi.new("double[3]")
 local function add_shape(name, kind, x, y, z)

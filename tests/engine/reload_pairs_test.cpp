@@ -1,0 +1,86 @@
+// Excluded pairs and collision properties across edits of a scene: what is declared differently is applied, the rest
+// stays as it is.
+#include <string>
+
+#include "engine/edited.h"
+
+namespace limber::engine_test {
+namespace {
+
+constexpr const char* kPairsShow = R"(
+local ball = sim:add_sphere_shape("ball", 0.1)
+local three = sim:add_body("three")
+three:add_part("a", ball)
+three:add_part("b", ball, { position = vec3(0.19, 0, 0) })
+three:add_part("c", ball, { position = vec3(0, 3, 0) })
+--EDIT
+osc:on("/include", function() three:include_pair("a", "b") end)
+osc:on("/exclude", function() three:exclude_pair("a", "c") end)
+)";
+
+std::string pairs_of(const Body& body) {
+  std::string text;
+  for (const PartPair& pair : body.pairs().list) {
+    if (pair.excluded()) text += body.parts()[pair.a]->name() + body.parts()[pair.b]->name() + " ";
+  }
+  return text;
+}
+
+TEST(ReloadPairs, WhatIsDeclaredDifferentlyIsApplied) {
+  Edited edited(kPairsShow);
+  edited.show().ticks(3);
+  EXPECT_EQ(pairs_of(edited.body("three")), "ab ");
+  EXPECT_EQ(edited.edit("--EDIT", "three:exclude_pair('b', 'c')\n--EDIT"), Reload::End::applied);
+  EXPECT_EQ(pairs_of(edited.body("three")), "ab bc ");
+  EXPECT_EQ(edited.edit("three:exclude_pair('b', 'c')", "three:include_pair('a', 'b')"), Reload::End::applied);
+  EXPECT_EQ(pairs_of(edited.body("three")), "");
+  EXPECT_EQ(edited.edit("three:include_pair('a', 'b')", ""), Reload::End::applied);
+  EXPECT_EQ(pairs_of(edited.body("three")), "ab ") << "back to the default";
+}
+
+TEST(ReloadPairs, WhatTheShowChangedStays) {
+  Edited edited(kPairsShow);
+  edited.show().ticks(3);
+  edited.show().send("/include");
+  edited.show().send("/exclude");
+  edited.show().ticks(1);
+  EXPECT_EQ(pairs_of(edited.body("three")), "ac ");
+  EXPECT_EQ(edited.edit("vec3(0, 3, 0)", "vec3(0, 4, 0)"), Reload::End::applied);
+  EXPECT_EQ(pairs_of(edited.body("three")), "ac ");
+  // the body is rebuilt, and its parts have other places in the list
+  EXPECT_EQ(edited.edit("three:add_part(\"a\", ball)",
+                        "three:add_part(\"new\", ball, { position = vec3(0, 9, 0) })\n"
+                        "three:add_part(\"a\", ball)"),
+            Reload::End::applied);
+  EXPECT_EQ(pairs_of(edited.body("three")), "ac ");
+  edited.show().ticks(3);
+  EXPECT_EQ(pairs_of(edited.body("three")), "ac ");
+}
+
+// a rebuilt body is compared where it is described, not where its parts moved to
+TEST(ReloadPairs, ARebuiltBodyIsComparedAsDescribed) {
+  Edited edited(kPairsShow);
+  edited.show().ticks(3);
+  edited.part("three", "b").set_pose({{0, 3.1, 0}, quat_identity()});
+  edited.show().ticks(2);
+  EXPECT_EQ(edited.edit("three:add_part(\"c\", ball, {", "three:add_part(\"c\", ball, { mass = 0,"),
+            Reload::End::applied);
+  edited.show().ticks(2);
+  EXPECT_EQ(pairs_of(edited.body("three")), "ab ");
+}
+
+TEST(ReloadPairs, GroupsAreProperties) {
+  Edited edited(kPairsShow);
+  edited.show().ticks(1);
+  EXPECT_EQ(
+      edited.edit("--EDIT", "sim.collision_groups = { 'one', 'two' }\nthree:part('a').collision_group = 'two'\n--EDIT"),
+      Reload::End::applied);
+  edited.show().ticks(1);
+  EXPECT_EQ(CollisionFilter::of(edited.part("three", "a").rigid()).group, 2);
+  EXPECT_EQ(edited.edit("{ 'one', 'two' }", "{ 'one', 'more', 'two' }"), Reload::End::applied);
+  edited.show().ticks(1);
+  EXPECT_EQ(CollisionFilter::of(edited.part("three", "a").rigid()).group, 4);
+}
+
+}  // namespace
+}  // namespace limber::engine_test

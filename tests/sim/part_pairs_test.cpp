@@ -1,0 +1,310 @@
+// Which parts of a body don't collide with each other: those that overlapped at the start, those that a script names;
+// beside joints, collision groups and self_collision.
+#include "sim/part_pairs.h"
+
+#include <gtest/gtest.h>
+
+#include <functional>
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "base/page_store.h"
+#include "sim/stage.h"
+#include "sim/world_key.h"
+
+namespace limber {
+namespace {
+
+using namespace test;
+
+std::vector<std::string> lines_since(std::uint64_t seen) {
+  std::vector<std::string> lines;
+  for (const LogLine& line : log_since(seen)) lines.push_back(line.text);
+  return lines;
+}
+
+/// Two boxes of one body side by side, 0.2 m each, with a gap between them (negative: overlap), without gravity.
+struct TwoBoxes : Stage {
+  explicit TwoBoxes(double gap)
+      : pair(body("pair")), a(part(pair, box_model(Vec3(0.2)), 1)), b(box_beside(pair, gap)) {}
+
+  Part& box_beside(Body& body, double gap) {
+    return part(body, box_model(Vec3(0.2)), 1, {{0.2 + gap, 0, 0}, quat_identity()});
+  }
+  /// The boxes are thrown at each other from 0.4 m; whether they pass through each other.
+  bool pass() {
+    b.set_pose({{0.6, 0, 0}, quat_identity()});
+    a.set_pose({});
+    a.set_velocity({1, 0, 0}, Vec3(0));
+    b.set_velocity({-1, 0, 0}, Vec3(0));
+    ticks(40);
+    return a.pose().position.x > b.pose().position.x;
+  }
+
+  Body& pair;
+  Part& a;
+  Part& b;
+};
+
+TEST(PartPairs, OverlapAtTheFirstTickExcludes) {
+  const std::pair<double, bool> cases[] = {{0.01, false}, {0, false}, {-0.00005, false}, {-0.0002, true}, {-0.1, true}};
+  for (const auto& [gap, excluded] : cases) {
+    TwoBoxes s(gap);
+    EXPECT_TRUE(s.pair.pairs().list.empty()) << gap;  // not before the first tick
+    s.ticks(1);
+    EXPECT_EQ(s.pair.excludes(s.a, s.b), excluded) << gap;
+    EXPECT_EQ(s.pass(), excluded) << gap;
+  }
+}
+
+TEST(PartPairs, TouchingTurnedBoxesCollide) {
+  for (int i = 0; i < 8; i++) {
+    Stage s;
+    const Pose frame{{1.3 * i, -0.7 * i, 2}, quat_euler(0.4 * i, 1.1 * i, -0.3 * i)};
+    Body& body = s.body("pair");
+    Part& a = s.part(body, box_model(Vec3(0.2)), 1, frame);
+    Part& b = s.part(body, box_model(Vec3(0.2)), 1, frame * Pose{{0.2, 0, 0}, quat_identity()});
+    s.ticks(1);
+    EXPECT_FALSE(body.excludes(a, b)) << i;
+  }
+}
+
+// excluded boxes feel nothing of each other: what penetrates is not pushed apart
+TEST(PartPairs, ExcludedPartsStayWhereTheyAre) {
+  TwoBoxes s(-0.1);
+  s.ticks(60);
+  EXPECT_EQ(s.a.pose().position, Vec3(0));
+  EXPECT_EQ(s.b.linear_velocity(), Vec3(0));
+}
+
+TEST(PartPairs, MovingLaterChangesNothing) {
+  TwoBoxes apart(0.3);
+  apart.ticks(1);
+  apart.b.set_pose({{0.1, 0, 0}, quat_identity()});
+  apart.ticks(5);
+  EXPECT_FALSE(apart.pair.excludes(apart.a, apart.b));
+  EXPECT_GT(glm::length(apart.b.pose().position - apart.a.pose().position), 0.1);  // pushed apart
+  TwoBoxes together(-0.1);
+  together.ticks(1);
+  together.b.set_pose({{5, 0, 0}, quat_identity()});
+  together.ticks(5);
+  EXPECT_TRUE(together.pair.excludes(together.a, together.b));
+}
+
+TEST(PartPairs, EditsActAtTheNextStep) {
+  TwoBoxes s(0.01);
+  s.ticks(1);
+  ASSERT_TRUE(s.pair.edit_pair(s.b, s.a, PairEdit::excluded).ok());
+  EXPECT_TRUE(s.pass());
+  ASSERT_TRUE(s.pair.edit_pair(s.a, s.b, PairEdit::included).ok());
+  EXPECT_FALSE(s.pass());
+  ASSERT_TRUE(s.pair.edit_pair(s.a, s.b, PairEdit::none).ok());
+  EXPECT_TRUE(s.pair.pairs().list.empty());
+  // before the first tick, too: an overlap does not change what was decided
+  TwoBoxes early(-0.0005);
+  ASSERT_TRUE(early.pair.edit_pair(early.a, early.b, PairEdit::included).ok());
+  early.ticks(1);
+  EXPECT_FALSE(early.pair.excludes(early.a, early.b));
+  ASSERT_TRUE(early.pair.edit_pair(early.a, early.b, PairEdit::none).ok());
+  EXPECT_TRUE(early.pair.excludes(early.a, early.b));
+  EXPECT_TRUE(early.pass());
+}
+
+// an existing contact ends at the next step
+TEST(PartPairs, ExcludingDropsTheContact) {
+  Stage s;
+  s.gravity({0, 0, -10});
+  Body& body = s.body("two");
+  Part& table = s.part(body, box_model(Vec3(0.2)), 0);
+  Part& box = s.part(body, box_model(Vec3(0.2)), 1, {{0, 0, 0.2}, quat_identity()});
+  s.ticks(30);
+  EXPECT_NEAR(box.pose().position.z, 0.2, 0.002);
+  const double rest = box.pose().position.z;
+  ASSERT_TRUE(body.edit_pair(table, box, PairEdit::excluded).ok());
+  s.ticks(6);
+  EXPECT_NEAR(box.pose().position.z, rest - 10.0 / 240 / 240 * 24 * 25 / 2, 1e-5);
+}
+
+TEST(PartPairs, RejectsForeignParts) {
+  TwoBoxes s(0.01);
+  Part& other = s.lone(sphere_model(0.1), 1);
+  EXPECT_NE(s.pair.edit_pair(s.a, other, PairEdit::excluded).error().find("of this body"), std::string::npos);
+  EXPECT_NE(s.pair.edit_pair(s.a, s.a, PairEdit::excluded).error().find("different"), std::string::npos);
+}
+
+// a joint and an exclusion are independent: neither ends the other
+TEST(PartPairs, JointsAndExclusionsAreIndependent) {
+  TwoBoxes s(0.05);
+  (void)s.pair.add_joint("j", s.a, s.b, JointType::floating, {0.1, 0, 0}, {0, 0, 1}).value();
+  s.ticks(1);
+  ASSERT_TRUE(s.pair.edit_pair(s.a, s.b, PairEdit::excluded).ok());
+  EXPECT_TRUE(s.pass());
+  ASSERT_TRUE(s.pair.edit_pair(s.a, s.b, PairEdit::included).ok());
+  EXPECT_TRUE(s.pass()) << "the joint still keeps them apart";
+  ASSERT_TRUE(s.pair.edit_pair(s.a, s.b, PairEdit::excluded).ok());
+  s.pair.joints().front()->leave();  // as when a body leaves the world
+  EXPECT_TRUE(s.pass()) << "the exclusion still does";
+  ASSERT_TRUE(s.pair.edit_pair(s.a, s.b, PairEdit::included).ok());
+  EXPECT_FALSE(s.pass());
+}
+
+TEST(PartPairs, JointedPartsAreNotListed) {
+  TwoBoxes s(-0.1);
+  (void)s.pair.add_joint("j", s.a, s.b, JointType::revolute, {0.1, 0, 0}, {0, 0, 1}).value();
+  s.ticks(1);
+  EXPECT_TRUE(s.pair.pairs().list.empty());
+}
+
+TEST(PartPairs, CopiesKeepTheList) {
+  TwoBoxes s(-0.0005);
+  Part& c = s.part(s.pair, box_model(Vec3(0.2)), 1, {{0, 0.5, 0}, quat_identity()});
+  s.ticks(1);
+  ASSERT_TRUE(s.pair.edit_pair(s.a, c, PairEdit::excluded).ok());
+  Body& copy = **s.world.copy_body(s.pair, "copy");
+  copy.set_pose({{0, 0, 3}, quat_identity()});
+  s.ticks(1);
+  EXPECT_TRUE(copy.excludes(*copy.parts()[0], *copy.parts()[1]));
+  EXPECT_TRUE(copy.excludes(*copy.parts()[0], *copy.parts()[2]));
+  EXPECT_FALSE(copy.excludes(*copy.parts()[1], *copy.parts()[2]));
+  const Vec3 before = copy.parts()[1]->pose().position;
+  s.ticks(30);
+  EXPECT_EQ(copy.parts()[1]->pose().position, before);
+}
+
+TEST(PartPairs, PartsAddedLaterAreCheckedWhenTheyCome) {
+  TwoBoxes s(0.05);
+  s.ticks(1);
+  Part& c = s.part(s.pair, sphere_model(0.05), 1);
+  s.ticks(1);
+  EXPECT_TRUE(s.pair.excludes(s.a, c));
+  EXPECT_FALSE(s.pair.excludes(s.b, c));
+  EXPECT_FALSE(s.pair.excludes(s.a, s.b));
+}
+
+TEST(PartPairs, UndoRestoresThem) {
+  TwoBoxes s(-0.0005);
+  Part& far = s.part(s.pair, sphere_model(0.05), 1, {{0, 0, 9}, quat_identity()});
+  ASSERT_TRUE(s.pair.edit_pair(s.a, far, PairEdit::excluded).ok());
+  s.ticks(1);
+  const std::uint64_t hash = s.world.state_hash();
+  s.world.undo().begin();
+  ASSERT_TRUE(s.pair.edit_pair(s.a, s.b, PairEdit::included).ok());
+  Part& c = s.part(s.pair, sphere_model(0.05), 1);
+  ASSERT_TRUE(s.pair.edit_pair(s.a, c, PairEdit::excluded).ok());
+  ASSERT_TRUE(s.pair.edit_pair(s.a, far, PairEdit::included).ok());
+  ASSERT_TRUE(s.pair.edit_pair(s.a, s.b, PairEdit::excluded).ok());
+  s.world.undo().take_back();
+  EXPECT_EQ(s.world.state_hash(), hash);
+  ASSERT_EQ(s.pair.pairs().list.size(), 2u);
+  EXPECT_EQ(s.pair.pairs().list[0].edit, PairEdit::none);
+  EXPECT_TRUE(s.pair.excludes(s.a, far));
+  EXPECT_TRUE(s.pass());
+}
+
+TEST(PartPairs, CheckpointsRestoreThem) {
+  TwoBoxes s(-0.0005);
+  s.ticks(2);
+  PageStore pages;
+  KeyBytes scratch;
+  WorldKey excluded, included;
+  excluded.take(s.world, pages, nullptr, scratch);
+  ASSERT_TRUE(s.pair.edit_pair(s.a, s.b, PairEdit::included).ok());
+  included.take(s.world, pages, nullptr, scratch);
+  EXPECT_FALSE(s.pass());
+  const std::uint64_t hash = s.world.state_hash();
+  excluded.bring_back(s.world, pages, scratch);
+  EXPECT_TRUE(s.pair.excludes(s.a, s.b));
+  EXPECT_TRUE(s.pass());
+  included.bring_back(s.world, pages, scratch);
+  EXPECT_FALSE(s.pass());
+  EXPECT_EQ(s.world.state_hash(), hash);
+  excluded.release(pages);
+  included.release(pages);
+}
+
+// one message for all bodies of a tick
+TEST(PartPairs, OverlapsAreReportedOnce) {
+  Stage s;
+  for (int i = 0; i < 10; i++) {
+    Body& body = s.body("body" + std::to_string(i));
+    s.part(body, sphere_model(0.1), 1, {{2.0 * i, 0, 0}, quat_identity()});
+    s.part(body, sphere_model(0.1), 1, {{2.0 * i, 0, 0.199}, quat_identity()});
+  }
+  const std::uint64_t seen = log_newest();
+  s.ticks(3);
+  const std::vector<std::string> lines = lines_since(seen);
+  ASSERT_EQ(lines.size(), 1u);
+  EXPECT_NE(lines[0].find("overlap at the first tick (1 mm); excluded from collision … and 9 more of this kind"),
+            std::string::npos)
+      << lines[0];
+}
+
+/// Two boxes of two bodies that meet, with groups and masks; whether they pass through each other.
+bool strangers_pass(const std::function<void(Stage&, Part&, Part&)>& prepare) {
+  Stage s;
+  Part& a = s.lone(box_model(Vec3(0.2)), 1);
+  Part& b = s.lone(box_model(Vec3(0.2)), 1, {{0.6, 0, 0}, quat_identity()});
+  a.set_velocity({1, 0, 0}, Vec3(0));
+  b.set_velocity({-1, 0, 0}, Vec3(0));
+  prepare(s, a, b);
+  s.ticks(40);
+  return a.pose().position.x > b.pose().position.x;
+}
+
+TEST(CollisionGroups, BothMustAgree) {
+  const auto with = [](double group_a, double mask_a, double group_b, double mask_b) {
+    return strangers_pass([=](Stage& s, Part& a, Part& b) {
+      s.set(a.id(), "collision_group", {group_a});
+      s.set(a.id(), "collision_mask", {mask_a});
+      s.set(b.id(), "collision_group", {group_b});
+      s.set(b.id(), "collision_mask", {mask_b});
+    });
+  };
+  EXPECT_FALSE(strangers_pass([](Stage&, Part&, Part&) {}));
+  EXPECT_FALSE(with(1, 65535, 1, 65535));
+  EXPECT_FALSE(with(2, 4, 4, 2));
+  EXPECT_FALSE(with(32768, 32768, 32768, 32768));
+  EXPECT_FALSE(with(3, 8, 8, 2));
+  EXPECT_TRUE(with(2, 65535, 4, 4));
+  EXPECT_TRUE(with(2, 2, 4, 65535));
+  EXPECT_TRUE(with(1, 65535, 1, 0));
+  EXPECT_TRUE(with(0, 65535, 1, 65535));
+}
+
+TEST(CollisionGroups, CopiesKeepThem) {
+  Stage s;
+  s.gravity({0, 0, -10});
+  s.floor();
+  Part& ghost = s.lone(sphere_model(0.1), 1, {{0, 0, 0.1}, quat_identity()});
+  s.set(ghost.id(), "collision_mask", {2});
+  Body& copy = **s.world.copy_body(ghost.body(), "copy");
+  copy.set_pose({{1, 0, 0.1}, quat_identity()});
+  s.ticks(30);
+  EXPECT_LT(ghost.pose().position.z, -0.5);
+  EXPECT_LT(copy.pose().position.z, -0.5);
+}
+
+TEST(StaticParts, AVelocityIsReported) {
+  Stage s;
+  const std::uint64_t seen = log_newest();
+  Part& floor = s.floor();
+  s.ticks(1);
+  s.set(floor.id(), "linear_velocity", {0, 0, 0});
+  s.ticks(1);
+  EXPECT_TRUE(lines_since(seen).empty());
+  s.set(floor.id(), "linear_velocity", {1, 0, 0});
+  s.ticks(1);
+  s.set(floor.id(), "angular_velocity", {1, 0, 0});
+  s.ticks(1);
+  s.set(floor.body().id(), "linear_velocity", {1, 0, 0});
+  s.ticks(1);
+  const std::vector<std::string> lines = lines_since(seen);
+  ASSERT_EQ(lines.size(), 1u);
+  EXPECT_NE(lines[0].find("static (mass 0), so a velocity has no effect"), std::string::npos) << lines[0];
+  EXPECT_EQ(floor.linear_velocity(), Vec3(0));
+}
+
+}  // namespace
+}  // namespace limber
