@@ -1,6 +1,7 @@
 # shellcheck shell=bash disable=SC2046,SC2086,SC2154
 # Uninitialized memory: the scenes of tests/memory under valgrind, in builds that initialize locals differently, and in
-# twenty processes each.
+# twenty processes each. (glm could initialize its types, by GLM_FORCE_CTOR_INIT; but then its copy constructors are not
+# trivial, and checkpoints copy vectors as bytes.)
 
 # the scenes with their options, a line each: NAME SCENE OPTION...
 memory_scenes() {
