@@ -172,6 +172,8 @@ function warn(...) end
 ---@field linear_velocity vec3like # m/s, -10000 .. 10000. The root's; setting it gives the whole body this motion.
 ---@field angular_velocity vec3like # rad/s, -10000 .. 10000. The root's; setting it turns the whole body about the root.
 ---@field self_collision boolean # default true. Whether its parts collide with each other; two that a joint connects never do, nor pairs of excluded_pairs.
+---@field can_sleep boolean # default true. Whether its parts fall asleep when they are at rest; asleep, they cost nothing until something acts on them.
+---@field asleep boolean # read-only. All its parts that can move are asleep.
 ---@field enabled boolean # False: out of the world, as health leaves a body that broke twice; reset enables.
 local body_ = {}
 
@@ -181,6 +183,7 @@ local body_ = {}
 ---@field linear_velocity? vec3like # m/s, -10000 .. 10000. The root's; setting it gives the whole body this motion.
 ---@field angular_velocity? vec3like # rad/s, -10000 .. 10000. The root's; setting it turns the whole body about the root.
 ---@field self_collision? boolean # default true. Whether its parts collide with each other; two that a joint connects never do, nor pairs of excluded_pairs.
+---@field can_sleep? boolean # default true. Whether its parts fall asleep when they are at rest; asleep, they cost nothing until something acts on them.
 ---@field enabled? boolean # False: out of the world, as health leaves a body that broke twice; reset enables.
 
 ---A part of that shape. Its pose is in the world, left out: the origin.
@@ -487,6 +490,7 @@ function shape_:add_child(child, position, rotation) end
 ---@field tick integer # read-only. Ticks since the start.
 ---@field panicked boolean # read-only. A panic holds: everything comes to rest.
 ---@field solver_fallbacks integer # read-only. Steps of islands that the direct solver left to the iterative one, since the start.
+---@field sleeping_parts integer # read-only. Parts that are asleep, at rest.
 sim = {}
 
 ---A body from a URDF file.

@@ -56,6 +56,11 @@ const Table& Body::table() {
               boolean("self_collision", true,
                       "Whether its parts collide with each other; two that a joint connects never do, nor pairs of "
                       "excluded_pairs.")),
+          effect<&Body::effect_can_sleep>(
+              boolean("can_sleep", true,
+                      "Whether its parts fall asleep when they are at rest; asleep, they cost nothing until something "
+                      "acts on them.")),
+          view<&Body::read_asleep>(readout(boolean("asleep", false, "All its parts that can move are asleep."))),
           live(state(effect<&Body::effect_enabled>(boolean(
               "enabled", true, "False: out of the world, as health leaves a body that broke twice; reset enables.")))),
           act<&Body::act_reset>(action("reset", 0, 0, "Back to the start pose, at rest.")),
@@ -330,6 +335,25 @@ void Body::effect_self_collision() {
 bool Body::self_collision() const {
   static const Row& row = table().at("self_collision");
   return store().values(id_, row)[0] != 0;
+}
+
+bool Body::can_sleep() const {
+  static const Row& row = table().at("can_sleep");
+  return store().values(id_, row)[0] != 0;
+}
+
+bool Body::asleep() const {
+  bool any = false;
+  for (const auto& part : parts_) {
+    if (part->is_static()) continue;
+    if (!part->asleep()) return false;
+    any = true;
+  }
+  return any && in_world_;
+}
+
+void Body::effect_can_sleep() {
+  for (const auto& part : parts_) world_.bullet().sleep().allow(part->rigid(), can_sleep());
 }
 
 void Body::reset() {

@@ -81,6 +81,10 @@ class Body {
   /// Of a body without parts: where its first part is placed, unless that is told a pose of its own.
   void set_pose(const Pose& pose);
   bool enabled() const;
+  /// Whether its parts may fall asleep.
+  bool can_sleep() const;
+  /// Whether all its parts that can move sleep, and there are some.
+  bool asleep() const;
   /// Whether it takes part: what `enabled` said at the last effects.
   bool in_world() const { return in_world_; }
   /// Takes the body out of the world, or back in, before the next step: what health does, and `reset` undoes.
@@ -130,6 +134,8 @@ class Body {
   void apply_pairs();
   bool has_unchecked_parts() const { return pairs_.checked < parts_.size(); }
   void find_overlaps();
+  void effect_can_sleep();
+  void read_asleep(double* out) const { out[0] = asleep() ? 1 : 0; }
   void read_position(double* out) const;
   void write_position(const double* in);
   void read_rotation(double* out) const;

@@ -38,14 +38,28 @@ btCollisionObject& object(const btBroadphaseProxy& proxy) {
 
 }  // namespace
 
+// Pairs of which at least one object is awake. What sleeps or is static keeps the contacts that it has.
+void Dispatcher::find_awake(btBroadphasePairArray& pairs) {
+  awake_.resizeNoInitialize(0);
+  for (int i = 0; i < pairs.size(); ++i) {
+    if (some_sleep_ && i + kHandles < pairs.size()) {
+      prefetch(pairs[i + kHandles].m_pProxy0, 1);
+      prefetch(pairs[i + kHandles].m_pProxy1, 1);
+    }
+    if (some_sleep_ && !object(*pairs[i].m_pProxy0).isActive() && !object(*pairs[i].m_pProxy1).isActive()) continue;
+    awake_.push_back(&pairs[i]);
+  }
+}
+
 void Dispatcher::dispatchAllCollisionPairs(btOverlappingPairCache* cache, const btDispatcherInfo& info, btDispatcher*) {
-  btBroadphasePairArray& pairs = cache->getOverlappingPairArray();
-  const int count = pairs.size();
+  find_awake(cache->getOverlappingPairArray());
+  const int count = awake_.size();
+  looked_at_ += static_cast<std::uint64_t>(count);
   for (int i = 0; i < count; ++i) {
-    if (i + kHandles < count) ask_for_handles(pairs[i + kHandles]);
-    if (i + kParts < count) ask_for_parts(pairs[i + kParts], manifolds_);
-    if (i + kPoints < count) ask_for_points(pairs[i + kPoints], manifolds_);
-    getNearCallback()(pairs[i], *this, info);
+    if (i + kHandles < count) ask_for_handles(*awake_[i + kHandles]);
+    if (i + kParts < count) ask_for_parts(*awake_[i + kParts], manifolds_);
+    if (i + kPoints < count) ask_for_points(*awake_[i + kPoints], manifolds_);
+    getNearCallback()(*awake_[i], *this, info);
   }
 }
 

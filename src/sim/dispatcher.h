@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 
 #include "base/prefetch.h"
 #include "sim/bullet.h"
@@ -31,8 +32,18 @@ class Dispatcher : public btCollisionDispatcher {
   void dispatchAllCollisionPairs(btOverlappingPairCache* cache, const btDispatcherInfo& info,
                                  btDispatcher* dispatcher) override;
 
+  /// Whether to look for what sleeps: pairs of which no object is awake are left out.
+  void set_some_sleep(bool some) { some_sleep_ = some; }
+  /// Pairs whose contacts were looked for, since the start.
+  std::uint64_t looked_at() const { return looked_at_; }
+
  private:
-  btManifoldArray manifolds_;  // of one pair
+  void find_awake(btBroadphasePairArray& pairs);
+
+  bool some_sleep_ = false;
+  std::uint64_t looked_at_ = 0;
+  btAlignedObjectArray<btBroadphasePair*> awake_;  // scratch
+  btManifoldArray manifolds_;                      // of one pair
 };
 
 }  // namespace limber

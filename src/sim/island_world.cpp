@@ -2,6 +2,7 @@
 #include "sim/island_world.h"
 
 #include <algorithm>
+#include <utility>
 
 #include "base/prefetch.h"
 #include "sim/dispatcher.h"
@@ -87,12 +88,25 @@ void IslandWorld::step(double h, int substeps) {
   if (!(h > 0) || substeps <= 0) return;
   const BulletMemory::Scope scope(memory);
   const btScalar step_length = to_scalar(h);
+  if (std::exchange(step_length_, step_length) != step_length) wake_all();
+  tick_length_ = to_scalar(h * substeps);
   for (int i = 0; i < substeps; ++i) {
     first_ = i == 0;
     last_ = i + 1 == substeps;
-    internalSingleStepSimulation(step_length);
+    if (joints_known_ && awake_.size() == 0 && linked_.size() == 0 && !sleep_.any_waking()) {
+      rest_step();
+    } else {
+      internalSingleStepSimulation(step_length);
+    }
   }
   first_ = last_ = false;
+  if (joints_known_ && sleep_.end_tick({places_, awake_, linked_})) joints_known_ = false;
+}
+
+// An internal step in which everything sleeps.
+void IslandWorld::rest_step() {
+  ails_.store(false, std::memory_order_relaxed);
+  if (m_internalTickCallback != nullptr) m_internalTickCallback(this, step_length_);
 }
 
 void IslandWorld::refresh_joints() {
@@ -104,6 +118,8 @@ void IslandWorld::refresh_joints() {
 void IslandWorld::addConstraint(btTypedConstraint* constraint, bool disable_collisions) {
   const BulletMemory::Scope scope(memory);
   joints_known_ = false;
+  sleep_.wake(constraint->getRigidBodyA());
+  sleep_.wake(constraint->getRigidBodyB());
   btDiscreteDynamicsWorld::addConstraint(constraint, disable_collisions);
   if (disable_collisions) look_anew(*constraint);
 }
@@ -122,9 +138,25 @@ void IslandWorld::addRigidBody(btRigidBody* body, int group, int mask) {
   btDiscreteDynamicsWorld::addRigidBody(body, group, mask);
 }
 
+void IslandWorld::addCollisionObject(btCollisionObject* object, int group, int mask) {
+  btDiscreteDynamicsWorld::addCollisionObject(object, group, mask);
+  sleep_.add(*object);
+}
+
 void IslandWorld::removeRigidBody(btRigidBody* body) {
   joints_known_ = false;
+  sleep_.remove(*body);
   btDiscreteDynamicsWorld::removeRigidBody(body);
+}
+
+void IslandWorld::wake_all() {
+  if (sleep_.sleeping() > 0) joints_known_ = false;
+  sleep_.wake_all();
+}
+
+void IslandWorld::setGravity(const btVector3& gravity) {
+  if (gravity != getGravity()) wake_all();  // Bullet leaves out what sleeps
+  btDiscreteDynamicsWorld::setGravity(gravity);
 }
 
 void IslandWorld::set_filter(btCollisionObject& object, const CollisionFilter& filter) {
@@ -158,6 +190,8 @@ void IslandWorld::removeConstraint(btTypedConstraint* constraint) {
   const BulletMemory::Scope scope(memory);
   constraint->getRigidBodyA().removeConstraintRef(constraint);
   constraint->getRigidBodyB().removeConstraintRef(constraint);
+  sleep_.wake(constraint->getRigidBodyA());
+  sleep_.wake(constraint->getRigidBodyB());
   look_anew(*constraint);
 }
 
@@ -168,33 +202,43 @@ void IslandWorld::look_anew(btTypedConstraint& joint) {
 }
 
 void IslandWorld::look_anew(btCollisionObject& object) {
+  sleep_.wake(object);
   if (object.getBroadphaseHandle() == nullptr) return;
   const BulletMemory::Scope scope(memory);
   broadphase->look_anew(object.getBroadphaseHandle());
 }
 
 // Islands' own work, and that of what stands nobody's: solve_batch().
-void IslandWorld::predictUnconstraintMotion(btScalar) { ails_.store(false, std::memory_order_relaxed); }
+void IslandWorld::predictUnconstraintMotion(btScalar) {
+  ails_.store(false, std::memory_order_relaxed);
+  if (sleep_.apply_wakes(!first_)) joints_known_ = false;
+  if (!joints_known_) learn_joints();
+  static_cast<Dispatcher&>(*dispatcher).set_some_sleep(sleep_.sleeping() > 0);
+}
 void IslandWorld::integrateTransforms(btScalar) {}
 
 void IslandWorld::createPredictiveContacts(btScalar) {}  // no continuous collision
 
 void IslandWorld::updateAabbs() {
   BT_PROFILE("updateAabbs");
-  const int count = m_collisionObjects.size();
+  if (!joints_known_ || places_.size() != getNumCollisionObjects()) learn_joints();
+  const int count = looked_.size();
   left_.resizeNoInitialize(count);
-  for_each(m_collisionObjects, [&](int i, btCollisionObject& object) {
-    if (i + kAhead / 2 < count) Broadphase::fetch(*m_collisionObjects[i + kAhead / 2]);
+  for_each(looked_, [&](int i, btCollisionObject& object) {
+    if (i + kAhead / 2 < count) Broadphase::fetch(*looked_[i + kAhead / 2]);
     left_[i] = Broadphase::look(object) ? object.getBroadphaseHandle() : nullptr;
   });
   int left = 0;
   for (int i = 0; i < count; ++i) {
-    if (left_[i] != nullptr) left_[left++] = left_[i];
+    if (left_[i] == nullptr) continue;
+    if (looked_[i]->isStaticObject()) sleep_.wake(*looked_[i]);
+    left_[left++] = left_[i];
   }
+  if (sleep_.apply_wakes(!first_)) joints_known_ = false;
   if (left > 0) broadphase->leave({&left_[0], static_cast<std::size_t>(left)});
 }
 
-void IslandWorld::updateActivationState(btScalar) {}  // none sleeps
+void IslandWorld::updateActivationState(btScalar) { sleep_.end_step(); }
 
 void IslandWorld::solveConstraints(btContactSolverInfo& info) {
   sort_contacts();
@@ -213,17 +257,31 @@ void IslandWorld::unite(btAlignedObjectArray<int>& above, int a, int b) {
 
 // Once they stand, no step has to go through all of them for it.
 void IslandWorld::learn_joints() {
-  const int count = m_nonStaticRigidBodies.size();
   places_.resizeNoInitialize(getNumCollisionObjects());
   for (int i = 0; i < places_.size(); ++i) places_[i] = -1;
-  joined_.resizeNoInitialize(count);
-  for (int i = 0; i < count; ++i) {
-    places_[m_nonStaticRigidBodies[i]->getWorldArrayIndex()] = joined_[i] = i;
+  awake_.resizeNoInitialize(0);
+  for (int i = 0; i < m_nonStaticRigidBodies.size(); ++i) {
+    btRigidBody& body = *m_nonStaticRigidBodies[i];
+    if (!body.isActive()) continue;
+    places_[body.getWorldArrayIndex()] = awake_.size();
+    awake_.push_back(&body);
   }
-  ends_.resizeNoInitialize(m_constraints.size());
-  for (int i = 0; i < ends_.size(); ++i) {
-    ends_[i] = {place_of(m_constraints[i]->getRigidBodyA()), place_of(m_constraints[i]->getRigidBodyB())};
-    unite(joined_, ends_[i].a, ends_[i].b);
+  const auto sleeps = [](const btCollisionObject& object) { return !object.isStaticObject() && !object.isActive(); };
+  looked_.resizeNoInitialize(0);
+  for (int i = 0; i < m_collisionObjects.size(); ++i) {
+    if (!sleeps(*m_collisionObjects[i])) looked_.push_back(m_collisionObjects[i]);
+  }
+  joined_.resizeNoInitialize(awake_.size());
+  for (int i = 0; i < joined_.size(); ++i) joined_[i] = i;
+  ends_.resizeNoInitialize(0);
+  linked_.resizeNoInitialize(0);
+  for (int i = 0; i < m_constraints.size(); ++i) {
+    const btRigidBody& a = m_constraints[i]->getRigidBodyA();
+    const btRigidBody& b = m_constraints[i]->getRigidBodyB();
+    if (sleeps(a) || sleeps(b)) continue;
+    ends_.push_back({place_of(a), place_of(b)});
+    linked_.push_back(m_constraints[i]);
+    unite(joined_, place_of(a), place_of(b));
   }
   joints_known_ = true;
 }
@@ -231,6 +289,7 @@ void IslandWorld::learn_joints() {
 // Who is joined, or may meet.
 void IslandWorld::calculateSimulationIslands() {
   BT_PROFILE("calculateSimulationIslands");
+  if (sleep_.wake_touched(!first_)) joints_known_ = false;
   if (!joints_known_ || places_.size() != getNumCollisionObjects()) learn_joints();
   above_.copyFromArray(joined_);
   const btBroadphasePairArray& pairs = getPairCache()->getOverlappingPairArray();
@@ -246,7 +305,7 @@ void IslandWorld::calculateSimulationIslands() {
 
 void IslandWorld::sort_bodies() {
   // islands get numbers in the order of their first body
-  const int count = m_nonStaticRigidBodies.size();
+  const int count = awake_.size();
   island_of_root_.resizeNoInitialize(count);
   for (int i = 0; i < count; ++i) island_of_root_[i] = -1;
   island_.resizeNoInitialize(count);
@@ -261,11 +320,11 @@ void IslandWorld::sort_bodies() {
   body_start_.resizeNoInitialize(island_count_ + 1);
   accumulate(body_start_, cursor_);
   bodies_.resizeNoInitialize(count);
-  for (int i = 0; i < count; ++i) bodies_[cursor_[island_[i]]++] = m_nonStaticRigidBodies[i];
+  for (int i = 0; i < count; ++i) bodies_[cursor_[island_[i]]++] = awake_[i];
 }
 
 void IslandWorld::sort_joints() {
-  const int count = m_constraints.size();
+  const int count = linked_.size();
   const auto island = [&](int joint) {
     const Ends& ends = ends_[joint];
     return ends.a < 0 && ends.b < 0 ? -1 : island_[ends.a >= 0 ? ends.a : ends.b];
@@ -278,9 +337,9 @@ void IslandWorld::sort_joints() {
   joints_.resizeNoInitialize(count);
   for (int i = 0; i < count; ++i) {
     if (island(i) >= 0) {
-      joints_[cursor_[island(i)]++] = m_constraints[i];
+      joints_[cursor_[island(i)]++] = linked_[i];
     } else if (last_) {
-      end_tick(*m_constraints[i]);
+      end_tick(*linked_[i]);
     }
   }
 }
@@ -363,7 +422,10 @@ void IslandWorld::move_bodies(int first, int last, btScalar h) {
     btTransform moved;
     body.predictIntegratedTransform(h, moved);
     body.proceedToTransform(moved);
-    if (last_) body.clearForces();
+    if (last_) {
+      body.clearForces();
+      sleep_.observe(body, tick_length_);
+    }
     if (ailment(body) != nullptr) ails_.store(true, std::memory_order_relaxed);
   }
   const int ahead = joint_start_[last] - joint_start_[first];

@@ -15,6 +15,7 @@
 #include "sim/island_direct.h"
 #include "sim/joint_block.h"
 #include "sim/joint_constraint.h"
+#include "sim/sleep.h"
 
 namespace limber {
 
@@ -95,8 +96,9 @@ struct WorldParts {
 
 /// Joints and contacts of an island are solved in an order that depends on that island alone (joints as added,
 /// contacts by the parts' age), so an island moves the same, bit for bit, alone or among others. Bodies are the
-/// caller's, without motion states, never sleep, are not kinematic, and have no continuous collision. What it keeps
-/// from step to step lies in the memory of the BulletMemory::Scope that it was made in. [sim]
+/// caller's, without motion states, are not kinematic, and have no continuous collision; they sleep (sleep.h) where
+/// SleepTracker::allow() lets them. What it keeps from step to step lies in the memory of the BulletMemory::Scope that
+/// it was made in. [sim]
 class IslandWorld : private WorldParts, public btDiscreteDynamicsWorld {
  public:
   BT_DECLARE_ALIGNED_ALLOCATOR();
@@ -115,6 +117,14 @@ class IslandWorld : private WorldParts, public btDiscreteDynamicsWorld {
   void addRigidBody(btRigidBody* body) override;
   void addRigidBody(btRigidBody* body, int group, int mask) override;
   void removeRigidBody(btRigidBody* body) override;
+  void addCollisionObject(btCollisionObject* object, int group, int mask) override;
+  /// Wakes everything when it differs.
+  void setGravity(const btVector3& gravity) override;
+
+  /// Nothing sleeps any more.
+  void wake_all();
+  SleepTracker& sleep() { return sleep_; }
+  const SleepTracker& sleep() const { return sleep_; }
 
   /// With which other objects this one may collide, from the next step on.
   void set_filter(btCollisionObject& object, const CollisionFilter& filter);
@@ -157,6 +167,7 @@ class IslandWorld : private WorldParts, public btDiscreteDynamicsWorld {
   void for_each(const btAlignedObjectArray<Object*>& objects, Work&& work);
   void look_anew(btTypedConstraint& joint);
   void look_anew(btCollisionObject& object);
+  void rest_step();
   int place_of(const btCollisionObject& object) const { return places_[object.getWorldArrayIndex()]; }
   static int root_of(btAlignedObjectArray<int>& above, int place);
   static void unite(btAlignedObjectArray<int>& above, int a, int b);
@@ -174,15 +185,23 @@ class IslandWorld : private WorldParts, public btDiscreteDynamicsWorld {
   bool first_ = false;  // of a tick's internal steps, and the last
   bool last_ = false;
 
-  // What only bodies and joints that come or go change: places of bodies in m_nonStaticRigidBodies, -1 of what stands.
+  SleepTracker sleep_{*this};
+  btScalar step_length_ = 0;  // of the last step
+  btScalar tick_length_ = 0;
+
+  // What only bodies and joints that come, go, wake or fall asleep change: places of bodies in awake_, -1 of the
+  // others.
   struct Ends {
     int a;
     int b;
   };
   bool joints_known_ = false;
-  btAlignedObjectArray<int> places_;  // by object
-  btAlignedObjectArray<Ends> ends_;   // by joint
-  btAlignedObjectArray<int> joined_;  // by body: union-find
+  btAlignedObjectArray<btRigidBody*> awake_;         // of m_nonStaticRigidBodies, in their order
+  btAlignedObjectArray<btCollisionObject*> looked_;  // these and what stands
+  btAlignedObjectArray<btTypedConstraint*> linked_;  // joints of these, or of nothing that can move
+  btAlignedObjectArray<int> places_;                 // by object
+  btAlignedObjectArray<Ends> ends_;                  // by joint in linked_
+  btAlignedObjectArray<int> joined_;                 // by body: union-find
 
   // Scratch of one internal step, kept so that nothing is allocated once the scene stands. Items of island i are
   // bodies_[body_start_[i]] up to bodies_[body_start_[i + 1]], and so on.

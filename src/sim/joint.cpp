@@ -144,6 +144,13 @@ void Joint::leave() {
   if (std::exchange(in_world_, false)) body_.world().bullet().removeConstraint(constraint_.get());
 }
 
+void Joint::wake() {
+  if (!in_world_) return;
+  SleepTracker& sleep = body_.world().bullet().sleep();
+  if (!parent_.is_static()) sleep.wake(parent_.rigid());
+  if (!child_.is_static()) sleep.wake(child_.rigid());
+}
+
 const std::string& Joint::name() const { return body_.store().name(id_); }
 
 int Joint::own_axis() const {
@@ -168,6 +175,7 @@ void Joint::effect_limits() {
     settings.stop_erp = number(limit_rows().stop_erp);
     settings.stop_cfm = number(limit_rows().stop_cfm);
     settings.friction = axis == own_axis() ? static_cast<float>(spec_.friction) : 0;
+    if (!(settings == constraint_->axis(axis))) wake();
     constraint_->set_axis(axis, settings);
     if (!settings.locked()) open |= 1u << axis;
   }

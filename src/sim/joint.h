@@ -72,6 +72,8 @@ class Joint {
   /// Into Bullet's world and out of it; the body says when.
   void enter();
   void leave();
+  /// Its parts are awake from the next step on. [any thread]
+  void wake();
   /// Limits, ERP and CFM of all axes into the constraint: the effect of their rows.
   void effect_limits();
   void read_axis(double* out) const;

@@ -58,11 +58,13 @@ void JointConstraint::set_axis(int axis, const AxisSettings& settings) {
   angle -= kTurn * std::round((angle - center) / kTurn);
 }
 
-void JointConstraint::set_goal(int axis, double target, double rest, double velocity) {
+bool JointConstraint::set_goal(int axis, double target, double rest, double velocity) {
   AxisSettings& mine = axes_[at(axis)];
+  const AxisSettings before = mine;
   mine.target = tamed(static_cast<float>(target), -1e6f, 1e6f);
   mine.rest = tamed(static_cast<float>(rest), -1e6f, 1e6f);
   mine.velocity = tamed(static_cast<float>(velocity), -1e5f, 1e5f);
+  return !(mine == before);
 }
 
 void JointConstraint::set_frames(const btTransform& frame_in_parent, const btTransform& frame_in_child) {
@@ -243,6 +245,17 @@ double JointConstraint::effective_inertia(int axis) const {
     }
   }
   return rest > 0 ? 1 / rest : 0;
+}
+
+bool JointConstraint::commands_motion() const {
+  constexpr float kPart = 0.25f;  // of the speed limit: slower, the servo is held up, or there already
+  for (int axis = 0; axis < 6; ++axis) {
+    const AxisSettings& s = axes_[at(axis)];
+    if (s.locked() || s.max_force <= 0 || s.velocity == 0) continue;
+    if (s.drive == AxisDrive::spin) return true;
+    if (s.drive == AxisDrive::servo && std::fabs(rate_[at(axis)]) > kPart * std::fabs(s.velocity)) return true;
+  }
+  return false;
 }
 
 double JointConstraint::stiffness_applied(int axis) const { return static_cast<double>(stiffness_applied_[at(axis)]); }

@@ -39,6 +39,7 @@ struct AxisSettings {
   bool locked() const { return lower == upper; }
   bool free() const { return lower > upper; }
   bool limited() const { return lower < upper; }
+  bool operator==(const AxisSettings&) const = default;
 };
 
 /// Axes 0..2 are linear along the parent-side frame's axes, 3..5 turn about x, y, z. The own axis is z (2 and 5).
@@ -59,8 +60,8 @@ class JointConstraint : public btTypedConstraint {
   /// Takes effect at the next internal step; absurd numbers are tamed (positions to 1e6, speeds to 1e5, forces to
   /// 1e12). A free axis that becomes limited takes the turn nearest to its range.
   void set_axis(int axis, const AxisSettings& settings);
-  /// Of these settings only where to and how fast: servo target, spring's rest, velocity.
-  void set_goal(int axis, double target, double rest, double velocity);
+  /// Of these settings only where to and how fast: servo target, spring's rest, velocity. Returns whether one changed.
+  bool set_goal(int axis, double target, double rest, double velocity);
   const AxisSettings& axis(int axis) const { return axes_[static_cast<std::size_t>(axis)]; }
   /// Moves the frames (centre-of-mass frames), keeping turns where it can.
   void set_frames(const btTransform& frame_in_parent, const btTransform& frame_in_child);
@@ -68,8 +69,12 @@ class JointConstraint : public btTypedConstraint {
   const btTransform& frame_in_child() const { return frame_b_; }
   /// 0 .. 1: a limit met at speed w is left at -bounce·w.
   void set_bounce(double bounce) { bounce_ = to_scalar(std::clamp(bounce, 0.0, 1.0)); }
+  btScalar bounce() const { return bounce_; }
   /// Passive damping of every axis that is not locked, in any mode: N·s/m and N·m·s/rad, >= 0, any value is stable.
   void set_damping(double damping) { damping_ = to_scalar(std::clamp(damping, 0.0, 1e12)); }
+  btScalar damping() const { return damping_; }
+  /// Whether a motor spins, or a servo moves at a speed that its limit sets, however slowly.
+  bool commands_motion() const;
 
   /// Call after a part was moved by hand: reads the pose anew, with the turns nearest to `near` (rad, own order; 0:
   /// outer and inner angle within ±pi, middle within ±pi/2), and forgets what servos learnt and motors applied.

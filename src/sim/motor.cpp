@@ -199,7 +199,7 @@ void Motor::follow() {
   if (leader_ == nullptr) leader_ = joint_.body().find_joint(mimic.leader);
   if (leader_ == nullptr) return;
   set_target(mimic.multiplier * leader_->value() + mimic.offset);
-  effect_goals();
+  (void)set_goals();  // the leader's motion keeps both awake
 }
 
 void Motor::effect_axes() {
@@ -218,11 +218,15 @@ void Motor::effect_axes() {
     settings.max_force = number(rows.max_force);
     settings.stiffness = number(rows.stiffness);
     settings.spring_damping = number(rows.damping);
+    if (!(settings == constraint_.axis(axis))) joint_.wake();
     constraint_.set_axis(axis, settings);
     if (mode(axis) == MotorMode::spring && number(rows.active) != 0) say_contradiction(axis);
   }
+  const btScalar bounce = constraint_.bounce();
+  const btScalar damping = constraint_.damping();
   constraint_.set_bounce(store.values(id_, *rows.bounce)[0]);
   constraint_.set_damping(store.values(id_, *rows.passive_damping)[0]);
+  if (constraint_.bounce() != bounce || constraint_.damping() != damping) joint_.wake();
   effect_goals();
 }
 
@@ -234,18 +238,25 @@ void Motor::fetch(const void* thing) {
 }
 
 void Motor::effect_goals() {
+  if (set_goals()) joint_.wake();
+}
+
+bool Motor::set_goals() {
   // at every tick for every motor that is played: values straight from the block, nothing for what is locked
   const double* kept = std::as_const(joint_.body().store()).kept_block(id_);
   const AxisRows& rows = axis_rows();
   const Panic& panic = joint_.body().world().panic();
   const bool held = panic.on() && panic.holds_motors();
+  bool changed = false;
   for (int axis = 0; axis < 6; axis++) {
     if (!joint_.is_open(axis)) continue;
     const auto half = static_cast<std::size_t>(axis / 3);
     const double* const own = kept + axis % 3;
-    constraint_.set_goal(axis, held ? hold_[at(axis)] : own[rows.servo_position[half]->offset],
-                         own[rows.rest[half]->offset], held ? Panic::kSink : own[rows.velocity[half]->offset]);
+    changed |=
+        constraint_.set_goal(axis, held ? hold_[at(axis)] : own[rows.servo_position[half]->offset],
+                             own[rows.rest[half]->offset], held ? Panic::kSink : own[rows.velocity[half]->offset]);
   }
+  return changed;
 }
 
 void Motor::say_contradiction(int axis) {

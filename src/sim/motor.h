@@ -61,6 +61,7 @@ class Motor {
 
  private:
   friend class WorldKey;
+  bool set_goals();
   void set_own(const Row& linear_row, const Row& angular_row, double value);
   void say_contradiction(int axis);
 

@@ -17,6 +17,7 @@ void Panic::turn(bool on) {
   on_ = on;
   began_ = world_.tick();
   world_.store().tell(world_.id(), told)[0] = on ? 1 : 0;
+  world_.bullet().wake_all();
   world_.effect_gravity();
   renew();
 }

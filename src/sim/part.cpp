@@ -1,6 +1,8 @@
 // Part: its rows, and the way between the link frame that users see and the frame that Bullet moves.
 #include "sim/part.h"
 
+#include <array>
+
 #include <fmt/format.h>
 
 #include "base/prefetch.h"
@@ -110,11 +112,19 @@ Part::~Part() {
 }
 
 void Part::enter() {
-  if (!rigid_->isInWorld()) body_.world().bullet().addRigidBody(rigid_.get());
+  if (rigid_->isInWorld()) return;
+  // it may have left while it slept
+  rigid_->forceActivationState(DISABLE_DEACTIVATION);
+  body_.world().bullet().addRigidBody(rigid_.get());
+  body_.world().bullet().sleep().allow(*rigid_, body_.can_sleep());
 }
 
 void Part::leave() {
   if (rigid_->isInWorld()) body_.world().bullet().removeRigidBody(rigid_.get());
+}
+
+void Part::wake() {
+  if (rigid_->isInWorld()) body_.world().bullet().sleep().wake(*rigid_);
 }
 
 const std::string& Part::name() const { return body_.store().name(id_); }
@@ -219,6 +229,9 @@ void Part::clear_forces() {
 
 void Part::push(const PartLoads::Load& load, const PartLoads::Kick& kick) {
   if (is_static_ || !rigid_->isInWorld()) return;
+  const Vec3 none(0);
+  if (load.force == none && load.torque == none && kick.impulse == none && kick.angular_impulse == none) return;
+  wake();
   // more than any part stands, but a number still: what is none would spread to all that the part touches
   const Vec3 most(1e15);
   const auto tamed = [&](const Vec3& v) { return to_bt(glm::clamp(v, -most, most)); };
@@ -247,18 +260,22 @@ void Part::effect_mass() {
   static const Row& row = table().at("mass");
   if (is_static_) return;
   const double mass = body_.store().values(id_, row)[0];
+  const btScalar before = rigid_->getInvMass();
   rigid_->setMassProps(static_cast<btScalar>(mass), to_bt(geometry_->unit_inertia * mass));
   rigid_->updateInertiaTensor();
   // Bullet keeps gravity as a force, which was made with the old mass
   rigid_->setGravity(body_.world().bullet().getGravity());
+  if (rigid_->getInvMass() != before) wake();
 }
 
 void Part::effect_damping() {
   static const Row& linear = table().at("linear_damping");
   static const Row& angular = table().at("angular_damping");
   const Store& store = body_.store();
+  const std::array<btScalar, 2> before{rigid_->getLinearDamping(), rigid_->getAngularDamping()};
   rigid_->setDamping(static_cast<btScalar>(store.values(id_, linear)[0]),
                      static_cast<btScalar>(store.values(id_, angular)[0]));
+  if (before != std::array<btScalar, 2>{rigid_->getLinearDamping(), rigid_->getAngularDamping()}) wake();
 }
 
 void Part::effect_surface() {
@@ -266,10 +283,15 @@ void Part::effect_surface() {
   static const Row& rolling = table().at("rolling_friction");
   static const Row& bounce = table().at("restitution");
   const Store& store = body_.store();
+  const auto surface = [this] {
+    return std::array<btScalar, 3>{rigid_->getFriction(), rigid_->getRollingFriction(), rigid_->getRestitution()};
+  };
+  const std::array<btScalar, 3> before = surface();
   rigid_->setFriction(static_cast<btScalar>(store.values(id_, friction)[0]));
   rigid_->setRollingFriction(static_cast<btScalar>(store.values(id_, rolling)[0]));
   const auto restitution = static_cast<btScalar>(store.values(id_, bounce)[0]);
   rigid_->setRestitution(restitution);
+  if (surface() != before) wake();
   // what bounces must not be braked before it touches: Bullet's contacts ahead would eat a part of the bounce
   const btScalar ahead = restitution > 0 && !is_static_ ? btScalar(0) : btScalar(BT_LARGE_FLOAT);
   if (rigid_->getContactProcessingThreshold() == ahead) return;
@@ -282,6 +304,7 @@ void Part::effect_surface() {
 
 void Part::effect_pose() {
   const btTransform t = to_bt(pose() * geometry_->frame);
+  if (!is_static_ || !(t == rigid_->getWorldTransform())) wake();
   rigid_->setWorldTransform(t);
   rigid_->setInterpolationWorldTransform(t);
   rigid_->updateInertiaTensor();
@@ -295,6 +318,9 @@ void Part::effect_velocity() {
     }
     return;
   }
+  const bool changes = to_bt(linear_velocity()) != rigid_->getLinearVelocity() ||
+                       to_bt(angular_velocity()) != rigid_->getAngularVelocity();
+  if (changes) wake();
   rigid_->setLinearVelocity(to_bt(linear_velocity()));
   rigid_->setAngularVelocity(to_bt(angular_velocity()));
 }

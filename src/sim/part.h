@@ -76,6 +76,10 @@ class Part {
   /// Into Bullet's world and out of it; the body says when.
   void enter();
   void leave();
+  /// Awake from the next step on; of a static part: what touches it. [any thread]
+  void wake();
+  /// At rest, left out of steps until something wakes it.
+  bool asleep() const { return !is_static_ && !rigid_->isActive(); }
 
   /// Before Bullet steps: takes what waited for it.
   void push(const PartLoads::Load& load, const PartLoads::Kick& kick);

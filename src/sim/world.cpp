@@ -21,13 +21,14 @@ using namespace rows;
 constexpr int kBodies = 4;
 
 struct WorldRows {
-  const Row *gravity, *timestep, *substeps, *iterations, *seed, *time, *tick, *solver, *fallbacks;
+  const Row *gravity, *timestep, *substeps, *iterations, *seed, *time, *tick, *solver, *fallbacks, *sleeping;
 };
 
 const WorldRows& world_rows() {
   static const auto at = [](const char* name) { return &World::table().at(name); };
-  static const WorldRows found{at("gravity"), at("timestep"), at("substeps"), at("solver_iterations"), at("seed"),
-                               at("time"),    at("tick"),     at("solver"),   at("solver_fallbacks")};
+  static const WorldRows found{
+      at("gravity"), at("timestep"), at("substeps"), at("solver_iterations"), at("seed"),
+      at("time"),    at("tick"),     at("solver"),   at("solver_fallbacks"),  at("sleeping_parts")};
   return found;
 }
 
@@ -61,6 +62,7 @@ const Table& World::table() {
           act<&World::act_panic>(action("panic", 0, 0, Panic::kDoc)),
           live(readout(integer("solver_fallbacks", 0, 0, kUnbounded,
                                "Steps of islands that the direct solver left to the iterative one, since the start."))),
+          live(readout(integer("sleeping_parts", 0, 0, kUnbounded, "Parts that are asleep, at rest."))),
           act<&World::act_reset>(action("reset", 0, 0, "The scene from its start, with the performer's values.")),
       });
   return table;
@@ -185,6 +187,7 @@ void World::effect_gravity() {
 }
 
 void World::effect_solver() {
+  bullet_->wake_all();
   bullet_->getSolverInfo().m_numIterations = static_cast<int>(store_.values(id_, *world_rows().iterations)[0]);
   bullet_->set_direct(store_.values(id_, *world_rows().solver)[0] != 0);
 }
@@ -233,23 +236,38 @@ void World::step() {
   store_.tell(id_, *world_rows().time)[0] += timestep();
   store_.tell(id_, *world_rows().tick)[0] = static_cast<double>(tick_);
   store_.tell(id_, *world_rows().fallbacks)[0] += static_cast<double>(bullet_->direct_counts().fallbacks - fallbacks);
+  store_.tell(id_, *world_rows().sleeping)[0] = bullet_->sleep().sleeping();
   tell_bodies();
   if (std::exchange(healed_, false)) settle_healed();
   camera_moves_.step();
   times_ = {start - begin, before - start, after - before, clock_seconds() - after};
 }
 
+bool World::awake_bodies_known() const {
+  return awake_version_ == bullet_->sleep().version() && awake_structure_ == store_.structure_version();
+}
+
+// Bodies that sleep keep what was read of them when they fell asleep.
 void World::tell_bodies() {
+  const bool known = awake_bodies_known();
+  if (!known) {
+    awake_bodies_.clear();
+    for (const auto& body : bodies_) awake_bodies_.push_back(body.get());
+  }
   const auto tell = [&](int, int first, int end) {
     for (int i = first; i < end; i++) {
-      Body& body = *bodies_[static_cast<std::size_t>(i)];
+      Body& body = *awake_bodies_[static_cast<std::size_t>(i)];
       if (!body.in_world()) continue;
       body.tell();
       if (!body.broken_) body.take_good_pose();
     }
   };
-  share_out_places(team_.get(), static_cast<int>(bodies_.size()), tell, kBodies);
-  for (const auto& body : bodies_) body->say_caps();
+  share_out_places(team_.get(), static_cast<int>(awake_bodies_.size()), tell, kBodies);
+  for (Body* const body : awake_bodies_) body->say_caps();
+  if (known) return;
+  std::erase_if(awake_bodies_, [](const Body* body) { return body->asleep(); });
+  awake_version_ = bullet_->sleep().version();
+  awake_structure_ = store_.structure_version();
 }
 
 void World::after_internal_step(btDynamicsWorld* bullet, btScalar h) {
@@ -279,6 +297,7 @@ void World::heal(Body& body, const Part& part, const char* what) {
     each.set_velocity(Vec3(0), Vec3(0));
     each.effect_pose();
     each.effect_velocity();
+    each.wake();  // with what touches it: its contacts are forgotten below
     // the force that did it would do it again in this tick's next internal step
     each.rigid().clearForces();
     each.rigid().applyGravity();
@@ -286,7 +305,6 @@ void World::heal(Body& body, const Part& part, const char* what) {
     if (each.rigid().isInWorld()) {
       bullet_->getPairCache()->cleanProxyFromPairs(each.rigid().getBroadphaseHandle(), bullet_->getDispatcher());
     }
-    each.rigid().forceActivationState(DISABLE_DEACTIVATION);
   }
   for (const auto& joint : body.joints_) joint->read_anew();
   healed_ = true;

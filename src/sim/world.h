@@ -142,6 +142,7 @@ class World {
   void tell_bodies();
   void report_overlap(const Body& body, const Part& a, const Part& b, double depth);
   void log_overlaps();
+  bool awake_bodies_known() const;
   void heal(Body& body, const Part& part, const char* what);
   static void after_internal_step(btDynamicsWorld* bullet, btScalar h);
   Result<void> name_is_free(NodeId group, std::string_view kind, std::string_view name) const;
@@ -178,6 +179,10 @@ class World {
   bool healed_ = false;                // a body, in this tick
   std::size_t overlaps_reported_ = 0;  // since log_overlaps()
   std::string overlap_text_;           // the first of them
+  // Bodies that are not asleep, as found at these versions of the sleep tracker and the store; 0: not yet.
+  std::vector<Body*> awake_bodies_;
+  std::uint64_t awake_version_ = 0;
+  std::uint64_t awake_structure_ = 0;
 };
 
 }  // namespace limber

@@ -36,6 +36,7 @@ void WorldKey::bring_back(World& world, const PageStore& pages, KeyBytes& scratc
   pages.copy_back(own_, 0, scratch.bytes());
   scratch.begin_bringing();
   pass(scratch, world);
+  world.awake_version_ = 0;
 }
 
 void WorldKey::release(PageStore& pages) {

@@ -25,6 +25,7 @@ struct WorldUndo::Motion {
   Part* part;
   btTransform pose, interpolated;
   btVector3 linear, angular;
+  bool waking;
 };
 
 struct WorldUndo::Hidden {
@@ -130,16 +131,18 @@ void WorldUndo::keep(Shape& shape) {
 void WorldUndo::keep_motion(Part& part) {
   const btRigidBody& rigid = part.rigid();
   motions_.push_back({&part, rigid.getWorldTransform(), rigid.getInterpolationWorldTransform(),
-                      rigid.getLinearVelocity(), rigid.getAngularVelocity()});
+                      rigid.getLinearVelocity(), rigid.getAngularVelocity(), world_.bullet().sleep().waking(rigid)});
   note(
       [](void* undo, std::size_t at) {
-        const Motion& kept = static_cast<WorldUndo*>(undo)->motions_[at];
+        auto& self = *static_cast<WorldUndo*>(undo);
+        const Motion& kept = self.motions_[at];
         btRigidBody& rigid = kept.part->rigid();
         rigid.setWorldTransform(kept.pose);
         rigid.setInterpolationWorldTransform(kept.interpolated);
         rigid.setLinearVelocity(kept.linear);
         rigid.setAngularVelocity(kept.angular);
         rigid.updateInertiaTensor();
+        if (!kept.waking) self.world_.bullet().sleep().cancel(rigid);
       },
       this, motions_.size() - 1);
 }

@@ -213,6 +213,20 @@ void body_enabled() {
   EXPECT_NEAR(ball.pose().position.z, 5 - fall(10, 1.0 / 240, 48), 1e-5);
 }
 
+// what may not sleep is stepped on, at rest or not
+void body_can_sleep() {
+  for (const bool may : {true, false}) {
+    Stage s;
+    s.floor();
+    s.gravity({0, 0, -10});
+    Part& box = s.lone(box_model(Vec3(0.2)), 1, {{0, 0, 0.1}, quat_identity()});
+    s.set(box.body().id(), "can_sleep", {may ? 1.0 : 0.0});
+    s.ticks(90);
+    EXPECT_EQ(box.asleep(), may);
+    EXPECT_EQ(s.number(s.world.id(), "sleeping_parts"), may ? 1 : 0);
+  }
+}
+
 // a ball on a static one of the same body; and one of another body, which always collides
 void body_self_collision() {
   Stage s;
@@ -259,6 +273,7 @@ void add_body_effects(RowEffects& effects) {
   effects[{"Body", "angular_velocity"}] = body_angular_velocity;
   effects[{"Body", "enabled"}] = body_enabled;
   effects[{"Body", "self_collision"}] = body_self_collision;
+  effects[{"Body", "can_sleep"}] = body_can_sleep;
 }
 
 }  // namespace limber::test

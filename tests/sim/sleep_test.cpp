@@ -1,0 +1,449 @@
+// Sleep: islands at rest are left out of steps, wake on any influence in the tick in which it comes, and nothing that
+// still moves or is made to move falls asleep, however slow it is.
+#include "sim/sleep.h"
+
+#include <gtest/gtest.h>
+
+#include <functional>
+
+#include "sim/arm.h"
+#include "sim/dispatcher.h"
+#include "sim/stage.h"
+
+namespace limber {
+namespace {
+
+using namespace test;
+
+constexpr double kTick = 1.0 / 60;
+
+int asleep(const Stage& s) { return static_cast<int>(s.number(s.world.id(), "sleeping_parts")); }
+
+// A stack of two boxes and a hinged arm, which fall asleep.
+struct Resting : Stage {
+  Resting()
+      : ground(floor()),
+        low(lone(box_model(Vec3(0.2)), 1, {{0, 0, 0.1}, quat_identity()})),
+        high(lone(box_model(Vec3(0.2)), 1, {{0, 0, 0.3}, quat_identity()})),
+        arm(make_arm(*this, "arm", {2, {2, 0, 0.05}})),
+        motor(*arm.motors()[0]) {
+    gravity({0, 0, -9.81});
+    ticks(120);
+  }
+  Part& link() const { return *arm.parts()[1]; }
+
+  Part& ground;
+  Part& low;
+  Part& high;
+  Body& arm;
+  Motor& motor;
+};
+
+TEST(Sleep, IslandsAtRestFallAsleepAndReportNoVelocity) {
+  Resting s;
+  EXPECT_EQ(asleep(s), 4);
+  EXPECT_EQ(s.number(s.low.body().id(), "asleep"), 1);
+  EXPECT_EQ(s.number(s.ground.body().id(), "asleep"), 0);
+  for (Part* part : {&s.low, &s.high, &s.link()}) {
+    EXPECT_EQ(part->linear_velocity(), Vec3(0));
+    EXPECT_EQ(part->angular_velocity(), Vec3(0));
+    EXPECT_EQ(part->rigid().getLinearVelocity(), btVector3(0, 0, 0));
+  }
+  for (const auto& joint : s.arm.joints()) EXPECT_EQ(s.number(joint->id(), "speed"), 0);
+  EXPECT_NEAR(s.high.pose().position.z, 0.3, 1e-3);
+}
+
+TEST(Sleep, NothingDriftsAndReadoutsKeepTheirValues) {
+  Resting s;
+  const Pose pose = s.high.pose();
+  const Vec3 torque = s.vec(s.motor.id(), "applied_torque");
+  s.ticks(600);
+  EXPECT_EQ(asleep(s), 4);
+  EXPECT_EQ(s.high.pose().position, pose.position);
+  EXPECT_EQ(s.high.pose().rotation, pose.rotation);
+  EXPECT_EQ(s.vec(s.motor.id(), "applied_torque"), torque);
+}
+
+// A servo that holds a beam of 2 kg, half a metre from its axis, reports its load while it sleeps.
+TEST(Sleep, AppliedTorqueOfAHoldingServoStays) {
+  Stage s;
+  s.gravity({0, 0, -9.81});
+  Body& body = s.body("beam");
+  Part& base = s.part(body, sphere_model(0.05), 0);
+  Part& beam = s.part(body, box_model({0.8, 0.1, 0.1}), 2, {{0.5, 0, 0}, quat_identity()});
+  Joint& hinge = *body.add_joint("hinge", base, beam, JointType::revolute, Vec3(0), {0, 1, 0}).value();
+  Motor& motor = *body.add_motor(hinge).value();
+  s.ticks(150);
+  ASSERT_EQ(asleep(s), 1);
+  EXPECT_NEAR(s.vec(motor.id(), "applied_torque").z, -9.81, 0.02);
+  s.ticks(120);
+  EXPECT_NEAR(s.vec(motor.id(), "applied_torque").z, -9.81, 0.02);
+}
+
+TEST(Sleep, PairsThatSleepAreNotLookedAt) {
+  Resting s;
+  const auto& dispatcher = static_cast<const Dispatcher&>(*s.world.bullet().getDispatcher());
+  std::uint64_t before = dispatcher.looked_at();
+  s.ticks(10);
+  EXPECT_EQ(dispatcher.looked_at() - before, 0u);
+  // a ball that rolls elsewhere: its own pair with the floor, once in each internal step
+  Part& ball = s.lone(sphere_model(0.1), 1, {{-3, 0, 0.1}, quat_identity()});
+  ball.set_velocity({0, 1, 0}, {-10, 0, 0});
+  before = dispatcher.looked_at();
+  s.ticks(10);
+  EXPECT_EQ(dispatcher.looked_at() - before, 40u);
+  EXPECT_EQ(asleep(s), 4);
+}
+
+TEST(Sleep, ABodyThatMayNotSleepStaysAwakeWithItsIsland) {
+  Resting s;
+  s.set(s.high.body().id(), "can_sleep", {0});
+  s.ticks(120);
+  EXPECT_EQ(asleep(s), 2);
+  EXPECT_FALSE(s.low.asleep());
+  s.set(s.high.body().id(), "can_sleep", {1});
+  s.ticks(90);
+  EXPECT_EQ(asleep(s), 4);
+}
+
+// What wakes the stack, or the arm, in the tick in which it comes.
+struct Influence {
+  const char* name;
+  std::function<void(Resting&)> act;
+  bool arm = false;  // else the stack
+};
+
+const std::vector<Influence>& influences() {
+  static const auto of_low = [](const char* row, double value) {
+    return [row, value](Resting& s) { s.set(s.low.id(), row, {value}); };
+  };
+  static const auto of_sim = [](const char* row, double value) {
+    return [row, value](Resting& s) { s.set(s.world.id(), row, {value}); };
+  };
+  static const auto of_motor = [](const char* row, std::vector<double> value) {
+    return [row, value](Resting& s) { s.set(s.motor.id(), row, value); };
+  };
+  static const std::vector<Influence> list = {
+      {"force",
+       [](Resting& s) {
+         s.low.apply_force({0.1, 0, 0});
+       }},
+      {"torque",
+       [](Resting& s) {
+         s.high.apply_torque({0, 0, 0.01});
+       }},
+      {"impulse",
+       [](Resting& s) {
+         s.high.apply_impulse({0.001, 0, 0});
+       }},
+      {"mass", of_low("mass", 2)},
+      {"friction", of_low("friction", 0.1)},
+      {"rolling_friction", of_low("rolling_friction", 0.1)},
+      {"restitution", of_low("restitution", 0.1)},
+      {"linear_damping", of_low("linear_damping", 0.1)},
+      {"angular_damping", of_low("angular_damping", 0.1)},
+      {"pose",
+       [](Resting& s) {
+         s.low.set_pose({{0, 0, 0.101}, quat_identity()});
+       }},
+      {"velocity",
+       [](Resting& s) {
+         s.high.set_velocity({0, 0, 0.1}, Vec3(0));
+       }},
+      {"reset", [](Resting& s) { s.low.body().reset(); }},
+      {"gravity",
+       [](Resting& s) {
+         s.gravity({0, 0, -9});
+       }},
+      {"timestep", of_sim("timestep", 0.01)},
+      {"substeps", of_sim("substeps", 5)},
+      {"solver_iterations", of_sim("solver_iterations", 51)},
+      {"solver", of_sim("solver", 0)},
+      {"panic", [](Resting& s) { s.world.panic().begin(); }},
+      {"may_not_sleep", [](Resting& s) { s.set(s.low.body().id(), "can_sleep", {0}); }},
+      {"self_collision", [](Resting& s) { s.set(s.low.body().id(), "self_collision", {0}); }},
+      {"neighbor_removed", [](Resting& s) { s.world.remove_body(s.low.body()); }},
+      {"neighbor_disabled", [](Resting& s) { s.low.body().set_enabled(false); }},
+      {"neighbor_moved",
+       [](Resting& s) {
+         s.low.set_pose({{5, 0, 0.1}, quat_identity()});
+       }},
+      {"floor_moved",
+       [](Resting& s) {
+         s.ground.set_pose({{0, 0, -0.1}, quat_identity()});
+       }},
+      {"floor_friction", [](Resting& s) { s.set(s.ground.id(), "friction", {0.1}); }},
+      {"floor_removed", [](Resting& s) { s.world.remove_body(s.ground.body()); }},
+      {"body_put_into_it",
+       [](Resting& s) {
+         s.lone(sphere_model(0.1), 1, {{0, 0, 0.45}, quat_identity()});
+       }},
+      {"static_body_put_into_it",
+       [](Resting& s) {
+         s.lone(sphere_model(0.1), 0, {{0, 0, 0.45}, quat_identity()});
+       }},
+      {"joint",
+       [](Resting& s) {
+         Part& part = s.part(s.high.body(), sphere_model(0.05), 1, {{0.5, 0, 0.3}, quat_identity()});
+         (void)s.high.body().add_joint("new", s.high, part, JointType::fixed, {0.2, 0, 0.3}, {0, 0, 1});
+       }},
+      {"target", of_motor("target", {0.1}), true},
+      {"mode", of_motor("mode", {0}), true},
+      {"speed", of_motor("speed", {0.5}), true},
+      {"max_force", of_motor("max_angular_force", {0, 0, 1}), true},
+      {"damping", of_motor("damping", {1}), true},
+      {"bounce", of_motor("bounce", {0.5}), true},
+      {"limits",
+       [](Resting& s) {
+         s.set(s.arm.joints()[1]->id(), "angular_upper_limit", {0, 0, 0.5});
+       },
+       true},
+      {"stop_cfm",
+       [](Resting& s) {
+         s.set(s.arm.joints()[0]->id(), "angular_stop_cfm", {0.1, 0, 0});
+       },
+       true},
+      {"base_moved",
+       [](Resting& s) {
+         s.arm.parts()[0]->set_pose({{2, 0, 0.06}, quat_identity()});
+       },
+       true},
+  };
+  return list;
+}
+
+struct SleepInfluence : testing::TestWithParam<Influence> {};
+
+TEST_P(SleepInfluence, WakesInTheTickInWhichItComes) {
+  Resting s;
+  ASSERT_EQ(asleep(s), 4);
+  const Influence& influence = GetParam();
+  const NodeId kept = s.high.id();
+  influence.act(s);
+  s.ticks(1);
+  ASSERT_TRUE(s.store.alive(kept));
+  EXPECT_FALSE(influence.arm ? s.link().asleep() : s.high.asleep());
+}
+
+INSTANTIATE_TEST_SUITE_P(Each, SleepInfluence, testing::ValuesIn(influences()),
+                         [](const auto& info) { return std::string(info.param.name); });
+
+// The iterative solver lets stacks tremble; they fall asleep all the same.
+TEST(Sleep, StacksOfThreeBoxesFallAsleep) {
+  for (const double solver : {0.0, 1.0}) {
+    Stage s;
+    s.floor();
+    s.gravity({0, 0, -9.81});
+    s.set(s.world.id(), "solver", {solver});
+    for (int i = 0; i < 3; i++) s.lone(box_model(Vec3(0.2)), 1, {{0, 0, 0.101 + 0.2 * i}, quat_identity()});
+    s.ticks(120);
+    EXPECT_EQ(asleep(s), 3);
+  }
+}
+
+TEST(Sleep, TheSameValuesAgainWakeNothing) {
+  Resting s;
+  for (int i = 0; i < 5; i++) {
+    s.set(s.motor.id(), "target", {s.number(s.motor.id(), "target")});
+    s.set(s.motor.id(), "mode", {s.number(s.motor.id(), "mode")});
+    s.set(s.low.id(), "friction", {0.5});
+    s.set(s.low.id(), "mass", {1});
+    s.low.set_velocity(Vec3(0), Vec3(0));
+    s.low.apply_force(Vec3(0));
+    s.ground.set_pose(s.ground.pose());
+    s.ticks(1);
+    EXPECT_EQ(asleep(s), 4);
+  }
+}
+
+TEST(Sleep, AStackFallsInTheTickInWhichItsLowestBoxIsRemoved) {
+  Resting s;
+  const double before = s.high.pose().position.z;
+  s.world.remove_body(s.low.body());
+  s.ticks(6);
+  // 24 internal steps: velocities first, then positions
+  EXPECT_NEAR(before - s.high.pose().position.z, 9.81 / 240 / 240 * 24 * 25 / 2, 1e-4);
+}
+
+TEST(Sleep, ABallThatHitsASleepingBoxGivesItItsMomentum) {
+  Stage s;
+  s.floor();
+  s.gravity({0, 0, -9.81});
+  Part& box = s.lone(box_model(Vec3(0.2)), 1, {{0, 0, 0.1}, quat_identity()});
+  s.ticks(90);
+  ASSERT_EQ(asleep(s), 1);
+  Part& ball = s.lone(sphere_model(0.1), 1, {{-0.25, 0, 0.1}, quat_identity()});
+  s.set(ball.id(), "friction", {0});
+  ball.set_velocity({2, 0, 0}, Vec3(0));
+  s.ticks(1);
+  EXPECT_EQ(asleep(s), 1);
+  s.ticks(2);
+  EXPECT_EQ(asleep(s), 0);
+  // inelastic: both go on with half the speed; the floor has braked the box for a tick or two
+  EXPECT_GT(box.linear_velocity().x, 0.8);
+  EXPECT_NEAR(box.linear_velocity().x + ball.linear_velocity().x, 2, 9.81 * 0.5 * 2.5 * kTick);
+}
+
+// Slow motions: after `seconds` each must have gone as far as predicted.
+TEST(SlowMotion, ASpinOfAHundredthRadianPerSecond) {
+  OneAxis s(5);
+  s.set(s.motor.id(), "mode", {1});
+  s.of_motor("velocity", 0.01);
+  s.ticks(600);
+  EXPECT_NEAR(s.x(), 0.1, 1e-3);
+}
+
+TEST(SlowMotion, AServoWhoseSpeedLimitIsTiny) {
+  OneAxis s(5);
+  s.set(s.motor.id(), "mode", {2});
+  s.of_motor("velocity", 5e-5);
+  s.set(s.motor.id(), "target", {1});
+  s.ticks(1200);
+  EXPECT_NEAR(s.x(), 20 * 5e-5, 2e-4);
+  EXPECT_EQ(asleep(s), 0);
+}
+
+TEST(SlowMotion, ARampOfTargetsOfAMillimetrePerSecond) {
+  OneAxis s(2);
+  s.gravity({0, 0, -9.81});
+  s.set_one(s.motor.id(), "linear_active", 2, 1);
+  s.set_one(s.motor.id(), "linear_servo_active", 2, 1);
+  for (int i = 1; i <= 300; i++) {
+    s.of_motor("servo_position", 1e-3 * i * kTick);
+    s.ticks(1);
+  }
+  EXPECT_NEAR(s.x(), 5e-3, 1e-4);
+}
+
+TEST(SlowMotion, APendulumAtItsTurningPoint) {
+  // 20 m long, let go at 0.5 mm from its lowest point
+  Stage s;
+  s.gravity({0, 0, -9.81});
+  Body& body = s.body("pendulum");
+  Part& pivot = s.part(body, sphere_model(0.1), 0);
+  const double angle = 5e-4 / 20;
+  Part& bob = s.part(body, sphere_model(0.1), 1, {{20 * std::sin(angle), 0, -20 * std::cos(angle)}, quat_identity()});
+  (void)body.add_joint("hinge", pivot, bob, JointType::revolute, Vec3(0), {0, 1, 0});
+  const double period = 2 * kPi * std::sqrt(20 / 9.81);
+  s.ticks(static_cast<int>(period / 2 / kTick));
+  EXPECT_NEAR(bob.center().x, -5e-4, 1e-4);
+  s.ticks(static_cast<int>(period / 2 / kTick));
+  EXPECT_NEAR(bob.center().x, 5e-4, 1e-4);
+}
+
+TEST(SlowMotion, ASpringAtItsTurningPoint) {
+  OneAxis s(5);
+  s.set_one(s.motor.id(), "angular_spring_active", 2, 1);
+  const double period = 20;
+  s.of_motor("spring_stiffness", s.inertia() * std::pow(2 * kPi / period, 2));
+  s.of_motor("spring_rest_length", 0.02);
+  s.ticks(600);
+  EXPECT_NEAR(s.x(), 0.04, 4e-4);
+  s.ticks(600);
+  EXPECT_NEAR(s.x(), 0, 4e-4);
+}
+
+TEST(SlowMotion, ABallAtItsApex) {
+  Stage s;
+  s.gravity({0, 0, -0.01});
+  Part& ball = s.lone(sphere_model(0.1), 1);
+  ball.set_velocity({0, 0, 0.01}, Vec3(0));
+  s.ticks(120);
+  EXPECT_NEAR(ball.pose().position.z, 0, 1e-3);
+  EXPECT_NEAR(ball.linear_velocity().z, -0.01, 1e-5);
+}
+
+TEST(SlowMotion, ADiscThatRollsAMillimetrePerSecond) {
+  Stage s;
+  s.floor();
+  s.gravity({0, 0, -9.81});
+  ShapeModel coin;
+  coin.kind = ShapeKind::cylinder;
+  coin.radius = 0.05;
+  coin.height = 0.04;
+  Part& disc = s.lone(coin, 0.1, {{0, 0, 0.05}, quat_axis({1, 0, 0}, kPi / 2)});
+  s.set(disc.id(), "friction", {0.1});
+  s.ticks(5);
+  disc.set_velocity({1e-3, 0, 0}, {0, 0.02, 0});
+  const double from = disc.pose().position.x;
+  s.ticks(300);
+  EXPECT_GT(disc.pose().position.x - from, 2e-3);
+  EXPECT_EQ(asleep(s), 0);
+}
+
+TEST(SlowMotion, ADriftWithoutGravity) {
+  Stage s;
+  Part& part = s.lone(box_model(Vec3(0.1)), 1);
+  part.set_velocity({1e-6, 0, 0}, {0, 0, 1e-6});
+  s.ticks(300);
+  EXPECT_NEAR(part.pose().position.x, 5e-6, 1e-8);
+  EXPECT_EQ(asleep(s), 0);
+  // without any motion there is nothing to lose
+  part.set_velocity(Vec3(0), Vec3(0));
+  s.ticks(90);
+  EXPECT_EQ(asleep(s), 1);
+}
+
+// Bodies that fall into a heap, are hit, and fall asleep again.
+std::uint64_t hash_of_heap(int threads, std::vector<int>* sleeping = nullptr) {
+  Store store;
+  WorldSetup setup;
+  if (threads > 1) setup.team = std::make_shared<Team>(threads);
+  World world(store, setup);
+  log_to_stderr(false);
+  Shape& plane = *world.add_shape("plane", plane_model()).value();
+  Shape& box = *world.add_shape("box", box_model(Vec3(0.2))).value();
+  (void)(*world.add_body("floor").value()).add_part("p", plane, 0, {});
+  std::vector<Part*> parts;
+  for (int i = 0; i < 90; i++) {
+    const Vec3 at(0.5 * (i % 9), 0.5 * (i / 9 % 5), 0.1 + 0.205 * (i / 45));
+    parts.push_back(
+        world.add_body("b" + std::to_string(i)).value()->add_part("p", box, 1, {at, quat_identity()}).value());
+  }
+  std::uint64_t hash = 0;
+  for (int i = 0; i < 250; i++) {
+    if (i == 150) parts[40]->set_velocity({3, 1, 0}, Vec3(0));
+    world.step();
+    hash = hash * 31 + world.motion_hash().now();
+    if (sleeping != nullptr) sleeping->push_back(world.bullet().sleep().sleeping());
+  }
+  log_to_stderr(true);
+  return hash ^ world.state_hash();
+}
+
+TEST(Sleep, IsTheSameForAnyNumberOfThreads) {
+  std::vector<int> sleeping;
+  const std::uint64_t hash = hash_of_heap(1, &sleeping);
+  EXPECT_EQ(sleeping[149], 90);
+  EXPECT_LT(sleeping[155], 90);
+  EXPECT_GT(sleeping[155], 60);
+  EXPECT_EQ(hash_of_heap(2), hash);
+  EXPECT_EQ(hash_of_heap(3), hash);
+}
+
+TEST(Sleep, ACopyOfASleepingBodyIsAwakeWhereItIsPut) {
+  Resting s;
+  Body& copy = *s.world.copy_body(s.high.body(), "copy").value();
+  copy.set_pose({{0, 0, 2}, quat_identity()});
+  s.ticks(6);
+  EXPECT_NEAR(copy.pose().position.z, 2 - 9.81 / 240 / 240 * 24 * 25 / 2, 1e-4);
+  EXPECT_EQ(asleep(s), 4);
+  s.set(s.high.body().id(), "can_sleep", {0});
+  EXPECT_FALSE(s.world.copy_body(s.high.body(), "other").value()->can_sleep());
+}
+
+TEST(Sleep, ACallThatFailsWakesNothing) {
+  Resting s;
+  s.world.undo().begin();
+  Part& part = s.part(s.high.body(), sphere_model(0.05), 1, {{0.5, 0, 0.3}, quat_identity()});
+  (void)s.high.body().add_joint("new", s.high, part, JointType::fixed, {0.2, 0, 0.3}, {0, 0, 1});
+  s.low.apply_force({1, 0, 0});
+  s.set(s.motor.id(), "target", {1});
+  s.set(s.low.id(), "position", {0, 0, 1});
+  s.world.undo().take_back();
+  s.ticks(2);
+  EXPECT_EQ(asleep(s), 4);
+}
+
+}  // namespace
+}  // namespace limber
