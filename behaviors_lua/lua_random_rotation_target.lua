@@ -6,7 +6,7 @@ return behavior {
   doc = "Leads each servo and spring towards angles of its own, drawn anew from time to time. (The built-in, written in Lua.)",
   params = {
     { "min_target", vec3(0, 0, 0), min = -1e4, max = 1e4, unit = "rad", doc = "Angles are drawn from these, about the joint's axes," },
-    { "max_target", vec3(0, 0, 0), min = -1e4, max = 1e4, unit = "rad", doc = "to these." },
+    { "max_target", vec3(0, 0, 0), min = -1e4, max = 1e4, unit = "rad", doc = "to these. On free axes it goes the shorter way round." },
     { "speed", 0.1, min = 0, max = 1e4, unit = "rad", doc = "How far ahead of the joint the servo or spring is set, at each application." },
     { "rand_interval", 1000, min = 0, max = 1e9, unit = "ms", doc = "Simulated time from one random draw to the next." },
     { "app_interval", 1, min = 0, max = 1e9, unit = "ms", doc = "Simulated time from one application to the next; shorter than a tick: every tick." },

@@ -367,10 +367,11 @@ local joint_ = {}
 ---@field body body # read-only.
 ---@field joint joint # read-only.
 ---@field mode "off"|"spin"|"servo"|"spring" # What is in force on the own axis; setting it sets the three flags.
----@field target number # m | rad, -10000 .. 10000. Where the own axis's servo or spring goes.
+---@field target number # m | rad, -10000 .. 10000. Where the own axis's servo or spring goes; full turns count: 20π is ten.
 ---@field speed number # m/s | rad/s, -10000 .. 10000. Speed of the own axis's spin; how fast its servo may go.
 ---@field bounce number # 0 .. 1, default 0. What a limit gives back: met at speed v, it is left at −bounce·v.
 ---@field damping number # N·s/m | N·m·s/rad, 0 .. 1000000, default 0. Passive damping of every free axis in any mode.
+---@field target_smoothing number # s, 0 .. 2, default 0. Smooths targets that arrive at irregular times, best over two periods of the stream; motion is later by 1.5 times this and up to three ticks. 0: a target is reached in one tick.
 ---@field linear_active flags3|boolean[]|boolean # default false false false. Motor on along each axis: a spin, or a servo when that is active too.
 ---@field linear_velocity vec3like|number # m/s, -10000 .. 10000, default 0 0 0. Speed of a spin along each axis; how fast a servo may go (0: as fast as its force allows).
 ---@field max_linear_force vec3like|number # N, 0 .. 1000000000, default 10000 10000 10000. Most that a spin or servo applies along each axis.
@@ -386,23 +387,24 @@ local joint_ = {}
 ---@field angular_velocity vec3like|number # rad/s, -10000 .. 10000, default 0 0 0. Speed of a spin about each axis; how fast a servo may go (0: as fast as its force allows).
 ---@field max_angular_force vec3like|number # N·m, 0 .. 1000000000, default 10000 10000 10000. Most that a spin or servo applies about each axis.
 ---@field angular_servo_active flags3|boolean[]|boolean # default false false false. Servo on about each axis (needs the motor active).
----@field angular_servo_position vec3like|number # rad, -10000 .. 10000, default 0 0 0. Where a servo goes about each axis.
+---@field angular_servo_position vec3like|number # rad, -10000 .. 10000, default 0 0 0. Where a servo goes about each axis; full turns count.
 ---@field angular_spring_active flags3|boolean[]|boolean # default false false false. Spring on about each axis; spin and servo are off then.
 ---@field angular_spring_rest_length vec3like|number # rad, -10000 .. 10000, default 0 0 0. Where a spring rests about each axis.
 ---@field angular_spring_stiffness vec3like|number # N·m/rad, 0 .. 1000000, default 0 0 0. Spring stiffness about each axis.
 ---@field angular_spring_damping vec3like|number # N·m·s/rad, 0 .. 1000000, default 0 0 0. Spring damping about each axis.
 ---@field angular_spring_stiffness_applied vec3 # read-only, N·m/rad. Stiffness in force about each axis, held stable for the step.
 ---@field angular_spring_damping_applied vec3 # read-only, N·m·s/rad. Spring damping in force about each axis.
----@field applied_force vec3 # read-only, N. What motors and springs applied along each axis, mean of the last tick.
----@field applied_torque vec3 # read-only, N·m. What motors and springs applied about each axis, mean of the last tick.
+---@field applied_force vec3 # read-only, N. What motors and springs applied along each axis, mean of the last tick; at a stop, what presses against it.
+---@field applied_torque vec3 # read-only, N·m. What motors and springs applied about each axis, mean of the last tick; at a stop, what presses against it.
 local motor_ = {}
 
 ---@class motor_opts
 ---@field mode? "off"|"spin"|"servo"|"spring" # What is in force on the own axis; setting it sets the three flags.
----@field target? number # m | rad, -10000 .. 10000. Where the own axis's servo or spring goes.
+---@field target? number # m | rad, -10000 .. 10000. Where the own axis's servo or spring goes; full turns count: 20π is ten.
 ---@field speed? number # m/s | rad/s, -10000 .. 10000. Speed of the own axis's spin; how fast its servo may go.
 ---@field bounce? number # 0 .. 1, default 0. What a limit gives back: met at speed v, it is left at −bounce·v.
 ---@field damping? number # N·s/m | N·m·s/rad, 0 .. 1000000, default 0. Passive damping of every free axis in any mode.
+---@field target_smoothing? number # s, 0 .. 2, default 0. Smooths targets that arrive at irregular times, best over two periods of the stream; motion is later by 1.5 times this and up to three ticks. 0: a target is reached in one tick.
 ---@field linear_active? flags3|boolean[]|boolean # default false false false. Motor on along each axis: a spin, or a servo when that is active too.
 ---@field linear_velocity? vec3like|number # m/s, -10000 .. 10000, default 0 0 0. Speed of a spin along each axis; how fast a servo may go (0: as fast as its force allows).
 ---@field max_linear_force? vec3like|number # N, 0 .. 1000000000, default 10000 10000 10000. Most that a spin or servo applies along each axis.
@@ -416,7 +418,7 @@ local motor_ = {}
 ---@field angular_velocity? vec3like|number # rad/s, -10000 .. 10000, default 0 0 0. Speed of a spin about each axis; how fast a servo may go (0: as fast as its force allows).
 ---@field max_angular_force? vec3like|number # N·m, 0 .. 1000000000, default 10000 10000 10000. Most that a spin or servo applies about each axis.
 ---@field angular_servo_active? flags3|boolean[]|boolean # default false false false. Servo on about each axis (needs the motor active).
----@field angular_servo_position? vec3like|number # rad, -10000 .. 10000, default 0 0 0. Where a servo goes about each axis.
+---@field angular_servo_position? vec3like|number # rad, -10000 .. 10000, default 0 0 0. Where a servo goes about each axis; full turns count.
 ---@field angular_spring_active? flags3|boolean[]|boolean # default false false false. Spring on about each axis; spin and servo are off then.
 ---@field angular_spring_rest_length? vec3like|number # rad, -10000 .. 10000, default 0 0 0. Where a spring rests about each axis.
 ---@field angular_spring_stiffness? vec3like|number # N·m/rad, 0 .. 1000000, default 0 0 0. Spring stiffness about each axis.

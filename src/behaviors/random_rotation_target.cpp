@@ -35,7 +35,7 @@ const BuiltInBehavior registered([] {
       "random_rotation_target", "Leads each servo and spring towards angles of its own, drawn anew from time to time.",
       BehaviorTargets::motors,
       {vec3("min_target", "rad", {0, 0, 0}, -1e4, 1e4, "Angles are drawn from these, about the joint's axes,"),
-       vec3("max_target", "rad", {0, 0, 0}, -1e4, 1e4, "to these."),
+       vec3("max_target", "rad", {0, 0, 0}, -1e4, 1e4, "to these. On free axes it goes the shorter way round."),
        number("speed", "rad", 0.1, 0, 1e4,
               "How far ahead of the joint the servo or spring is set, at each application."),
        rows::rand_interval(), rows::app_interval()});

@@ -394,14 +394,17 @@ void Body::tell() {
   for (const auto& part : parts_) part->tell();
   for (const auto& joint : joints_) {
     joint->tell();
-    springs_ = springs_ || joint->constraint().holds_spring();
+    const JointConstraint& constraint = joint->constraint();
+    warns_ = warns_ || constraint.holds_spring() || constraint.target_outside();
   }
 }
 
 void Body::say_caps() {
-  if (!std::exchange(springs_, false)) return;
+  if (!std::exchange(warns_, false)) return;
   for (const auto& joint : joints_) {
-    if (joint->constraint().holds_spring() && joint->motor() != nullptr) joint->motor()->say_cap();
+    if (joint->motor() == nullptr) continue;
+    if (joint->constraint().holds_spring()) joint->motor()->say_cap();
+    if (joint->constraint().target_outside()) joint->motor()->warn_outside();
   }
 }
 

@@ -108,7 +108,7 @@ class Body {
   void follow_leaders();
   /// Readouts of its parts and joints. [any thread, while nobody else is at this body]
   void tell();
-  /// After tell(): logs springs that are held at less than they were told, once each.
+  /// After tell(): logs springs that are held at less than they were told and targets outside limits, once each.
   void say_caps();
   /// The present pose is what health goes back to.
   void take_good_pose();
@@ -171,8 +171,8 @@ class Body {
   std::size_t good_poses_ = 0;  // so many of them count
   std::uint64_t kept_in_ = 0;   // the guarded call whose undo knows this body
   bool restored_once_ = false;
-  bool broken_ = false;   // healed in this tick
-  bool springs_ = false;  // told in this tick
+  bool broken_ = false;  // healed in this tick
+  bool warns_ = false;   // a joint may have to report a capped spring or a target outside its limits
 };
 
 }  // namespace limber

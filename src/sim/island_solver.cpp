@@ -54,7 +54,7 @@ void IslandSolver::make_room(int joints) {
 }
 
 void IslandSolver::plan(JointConstraint& joint, const btContactSolverInfo& info) {
-  joint.set_step(info.m_timeStep);
+  joint.set_step(info.m_timeStep, steps_left_, step_count_);
   planned_count_ += joint.plan(&planned_[planned_count_]).size();
 }
 

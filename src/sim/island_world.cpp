@@ -93,6 +93,7 @@ void IslandWorld::step(double h, int substeps) {
   for (int i = 0; i < substeps; ++i) {
     first_ = i == 0;
     last_ = i + 1 == substeps;
+    for (const auto& solver : solvers) solver->set_substep(substeps - i, substeps);
     if (joints_known_ && awake_.size() == 0 && linked_.size() == 0 && !sleep_.any_waking()) {
       rest_step();
     } else {

@@ -35,6 +35,11 @@ class IslandSolver : public btSequentialImpulseConstraintSolver {
 
   void set_direct(bool on) { direct_wanted_ = on; }
   bool direct_wanted() const { return direct_wanted_; }
+  /// Of the `count` internal steps of a tick, `left` are still to come, the present one included.
+  void set_substep(int left, int count) {
+    steps_left_ = left;
+    step_count_ = count;
+  }
   IslandDirect& direct() { return direct_; }
   const IslandDirect& direct() const { return direct_; }
 
@@ -78,6 +83,8 @@ class IslandSolver : public btSequentialImpulseConstraintSolver {
   btAlignedObjectArray<JointRows> joints_;
   ContactSweep contacts_;
   IslandDirect direct_;
+  int steps_left_ = 1;
+  int step_count_ = 1;
   bool direct_wanted_ = false;
   bool direct_here_ = false;  // in the island at hand
 };

@@ -137,7 +137,9 @@ Joint::~Joint() {
 }
 
 void Joint::enter() {
-  if (!std::exchange(in_world_, true)) body_.world().bullet().addConstraint(constraint_.get());
+  if (std::exchange(in_world_, true)) return;
+  constraint_->restart_goals();
+  body_.world().bullet().addConstraint(constraint_.get());
 }
 
 void Joint::leave() {

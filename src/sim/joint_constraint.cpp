@@ -21,14 +21,18 @@ double reach(const AxisSettings& s) {
 }
 
 // Finite, and small enough that no square of it overflows.
-float tamed(float v, float least, float most) { return v >= least ? std::min(v, most) : least; }
+template <class T>
+T tamed(T v, T least, T most) {
+  return v >= least ? std::min(v, most) : least;
+}
 
 AxisSettings tamed(AxisSettings s) {
-  for (float* position : {&s.lower, &s.upper, &s.target, &s.rest}) *position = tamed(*position, -1e6f, 1e6f);
-  for (float* size : {&s.max_force, &s.stiffness, &s.spring_damping, &s.friction}) *size = tamed(*size, 0, 1e12f);
+  for (float* position : {&s.lower, &s.upper}) *position = tamed(*position, -1e6f, 1e6f);
+  for (double* position : {&s.target, &s.rest}) *position = tamed(*position, -1e6, 1e6);
+  for (float* size : {&s.max_force, &s.stiffness, &s.spring_damping, &s.friction}) *size = tamed(*size, 0.0f, 1e12f);
   s.velocity = tamed(s.velocity, -1e5f, 1e5f);
-  s.stop_erp = tamed(s.stop_erp, 0, 1);
-  s.stop_cfm = tamed(s.stop_cfm, 0, 1e6f);
+  s.stop_erp = tamed(s.stop_erp, 0.0f, 1.0f);
+  s.stop_cfm = tamed(s.stop_cfm, 0.0f, 1e6f);
   return s;
 }
 
@@ -44,7 +48,9 @@ void JointConstraint::set_axis(int axis, const AxisSettings& settings) {
   AxisSettings& mine = axes_[at(axis)];
   const float lower = mine.lower;
   const float upper = mine.upper;
+  const AxisDrive drive = mine.drive;
   mine = tamed(settings);
+  if (mine.drive != drive || (lower == upper && !mine.locked())) goals_.restart(axis);
   if (mine.lower == lower && mine.upper == upper) return;
   const int middle = middle_;
   choose_order();
@@ -61,8 +67,8 @@ void JointConstraint::set_axis(int axis, const AxisSettings& settings) {
 bool JointConstraint::set_goal(int axis, double target, double rest, double velocity) {
   AxisSettings& mine = axes_[at(axis)];
   const AxisSettings before = mine;
-  mine.target = tamed(static_cast<float>(target), -1e6f, 1e6f);
-  mine.rest = tamed(static_cast<float>(rest), -1e6f, 1e6f);
+  mine.target = tamed(target, -1e6, 1e6);
+  mine.rest = tamed(rest, -1e6, 1e6);
   mine.velocity = tamed(static_cast<float>(velocity), -1e5f, 1e5f);
   return !(mine == before);
 }
@@ -85,6 +91,7 @@ void JointConstraint::reset(const Vec3& near) {
   learnt_inertia_.fill(0);
   pair_inertia_.fill(0);
   tick_time_ = 0;
+  goals_.restart();
   read_pose(near == Vec3(0));
   previous_rate_ = rate_;
 }
@@ -96,6 +103,7 @@ void JointConstraint::end_tick() {
   for (std::size_t i = 0; i < 6; ++i) applied_[i] = tick_impulse_[i] * per_time;
   tick_impulse_.fill(0);
   tick_time_ = 0;
+  goals_.end_tick();
   read_pose();
 }
 
@@ -249,6 +257,7 @@ double JointConstraint::effective_inertia(int axis) const {
 
 bool JointConstraint::commands_motion() const {
   constexpr float kPart = 0.25f;  // of the speed limit: slower, the servo is held up, or there already
+  if (goals_.moving()) return true;
   for (int axis = 0; axis < 6; ++axis) {
     const AxisSettings& s = axes_[at(axis)];
     if (s.locked() || s.max_force <= 0 || s.velocity == 0) continue;

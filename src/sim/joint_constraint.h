@@ -8,6 +8,7 @@
 #include <span>
 
 #include "base/vec.h"
+#include "sim/axis_goals.h"
 #include "sim/bullet.h"
 #include "sim/tree_rows.h"
 
@@ -30,8 +31,8 @@ struct AxisSettings {
   AxisDrive drive = AxisDrive::off;
   float velocity = 0;        ///< Spin: the speed to hold (0 brakes). Servo: its speed limit, sign ignored, 0: no limit.
   float max_force = 0;       ///< Of spin and servo, >= 0.
-  float target = 0;          ///< Of the servo; clamped to the limits.
-  float rest = 0;            ///< Where the spring pulls to, counted in full turns: it is never wrapped.
+  double target = 0;         ///< Of the servo, full turns included: never wrapped. Beyond a limit, it presses there.
+  double rest = 0;           ///< Of the spring, full turns included: never wrapped.
   float stiffness = 0;       ///< Of the spring, N/m or N·m/rad, capped for stability (see stiffness_applied).
   float spring_damping = 0;  ///< Of the spring, N·s/m or N·m·s/rad; implicit, so never capped.
   float friction = 0;        ///< Coulomb friction, N or N·m, in every mode.
@@ -60,9 +61,15 @@ class JointConstraint : public btTypedConstraint {
   /// Takes effect at the next internal step; absurd numbers are tamed (positions to 1e6, speeds to 1e5, forces to
   /// 1e12). A free axis that becomes limited takes the turn nearest to its range.
   void set_axis(int axis, const AxisSettings& settings);
-  /// Of these settings only where to and how fast: servo target, spring's rest, velocity. Returns whether one changed.
+  /// Of these settings only where to and how fast: servo target, spring's rest, velocity. The next tick reaches a new
+  /// target or rest at a constant speed (AxisGoals). Returns whether one changed.
   bool set_goal(int axis, double target, double rest, double velocity);
   const AxisSettings& axis(int axis) const { return axes_[static_cast<std::size_t>(axis)]; }
+  /// Targets and rests in force are those set, from the next step on, without a way from those before.
+  void restart_goals() { goals_.restart(); }
+  /// Smoothing time of targets and rests, s, 0: none. Within the BulletMemory::Scope that the constraint was made in.
+  void set_smoothing(double time) { goals_.set_smoothing(time); }
+  double smoothing() const { return goals_.smoothing(); }
   /// Moves the frames (centre-of-mass frames), keeping turns where it can.
   void set_frames(const btTransform& frame_in_parent, const btTransform& frame_in_child);
   const btTransform& frame_in_parent() const { return frame_a_; }
@@ -73,7 +80,7 @@ class JointConstraint : public btTypedConstraint {
   /// Passive damping of every axis that is not locked, in any mode: N·s/m and N·m·s/rad, >= 0, any value is stable.
   void set_damping(double damping) { damping_ = to_scalar(std::clamp(damping, 0.0, 1e12)); }
   btScalar damping() const { return damping_; }
-  /// Whether a motor spins, or a servo moves at a speed that its limit sets, however slowly.
+  /// Whether a motor spins, a target is on its way, or a servo moves at a speed that its limit sets, however slowly.
   bool commands_motion() const;
 
   /// Call after a part was moved by hand: reads the pose anew, with the turns nearest to `near` (rad, own order; 0:
@@ -101,7 +108,8 @@ class JointConstraint : public btTypedConstraint {
   Pose parent_frame() const { return from_bt(m_rbA.getCenterOfMassTransform() * frame_a_); }
   Pose child_frame() const { return from_bt(m_rbB.getCenterOfMassTransform() * frame_b_); }
 
-  /// What motors, servos and springs applied on the child, mean over the last tick, N and N·m per axis.
+  /// What motors, servos and springs applied on the child, mean over the last tick, N and N·m per axis. A motor that
+  /// presses against a limit applies its full force there, and the limit reacts.
   Vec3 applied_force() const { return {applied_[0], applied_[1], applied_[2]}; }
   Vec3 applied_torque() const { return {applied_[3], applied_[4], applied_[5]}; }
   /// The spring in force at the last internal step: stiffness is held below inertia/(16 h²), 0 where no spring acts.
@@ -109,6 +117,9 @@ class JointConstraint : public btTypedConstraint {
   double damping_applied(int axis) const;
   /// Whether a spring was held below its stiffness at the last internal step.
   bool holds_spring() const { return holds_spring_; }
+  /// Whether the target of a servo was outside the limits at the last internal step.
+  bool target_outside(int axis) const { return (outside_ >> axis & 1) != 0; }
+  bool target_outside() const { return outside_ != 0; }
   /// Inertia that a spring on this axis works on, the locked axes held: kg or kg·m². It says how many substeps
   /// would lift the cap: h <= sqrt(inertia/(16·stiffness)).
   double effective_inertia(int axis) const;
@@ -150,8 +161,13 @@ class JointConstraint : public btTypedConstraint {
   double& taken_by_locks() { return taken_by_locks_; }
   /// Impulses of the planned rows, in their order, once the step is solved.
   void take_impulses(std::span<const double> impulses);
-  /// Length of the internal step that the next rows are for, s.
-  void set_step(btScalar h) { h_ = h; }
+  /// The internal step that the next rows are for: its length, s, and where it is in the tick: `left` of `count` steps,
+  /// this one included, are still to come.
+  void set_step(btScalar h, int left = 1, int count = 1) {
+    h_ = h;
+    steps_left_ = left;
+    step_count_ = count;
+  }
   /// Impulses of the rows just solved, in the order in which getInfo2 wrote them.
   void take_impulses(const btSolverConstraint* rows, int count);
   /// The rows end with one motor row (if any) and those of the locked axes; IslandSolver solves these together.
@@ -188,6 +204,8 @@ class JointConstraint : public btTypedConstraint {
   void plan_spring(int axis);
   void plan_limit(int axis, bool upper);
   btScalar servo_velocity(int axis);
+  btScalar spin_velocity(int axis);
+  btScalar braking_speed(int axis, btScalar way);
   void learn_inertia(int axis);
   btScalar capped_stiffness(int axis) const;
   void add_row(int axis, btScalar velocity, btScalar softness, btScalar lower, btScalar upper,
@@ -200,6 +218,7 @@ class JointConstraint : public btTypedConstraint {
   btVector3 arm_a_;                  // from each centre of mass to the child's pivot, world
   btVector3 arm_b_;
   std::array<AxisSettings, 6> axes_{};
+  AxisGoals goals_;
   std::array<double, 3> angle_{};
   std::array<float, 3> offset_{};
   std::array<float, 6> rate_{};
@@ -215,9 +234,13 @@ class JointConstraint : public btTypedConstraint {
   std::array<float, 6> learnt_inertia_{};
   std::array<float, 6> pair_inertia_{};
   std::array<float, 6> stiffness_applied_{};
+  std::array<std::int8_t, 6> presses_{};  // +1 against its upper limit, -1 against its lower one, by axis
+  std::uint8_t outside_ = 0;              // axes of servos whose target is outside the limits, a bit each
   bool holds_spring_ = false;
   float tick_time_ = 0;
   btScalar h_ = btScalar(1.0 / 240.0);
+  int steps_left_ = 1;
+  int step_count_ = 1;
   btScalar bounce_ = 0;
   btScalar damping_ = 0;
   int outer_ = 2;

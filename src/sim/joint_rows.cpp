@@ -15,8 +15,13 @@ constexpr btScalar kLinearMargin = btScalar(0.005);
 /// Fastest repair of a stiff lock's or limit's error, rad/s and m/s: a joint torn apart comes back without a bang.
 constexpr btScalar kFastestRepair = btScalar(20);
 /// Part of its error that a servo makes good in one step: with a speed limit, and without one.
-constexpr btScalar kServoGain = btScalar(0.9);
-constexpr btScalar kEagerServoGain = btScalar(0.25);
+constexpr double kServoGain = 0.9;
+constexpr double kEagerServoGain = 0.25;
+/// Relative: a target further than this beyond a limit is outside of it.
+constexpr double kOutside = 1e-5;
+/// A servo nearer than this to its limit stands there: rad, m.
+constexpr double kAngularStop = 1e-3;
+constexpr double kLinearStop = 1e-4;
 /// Part of max_force that braking counts on; the rest is left to gravity and neighbours.
 constexpr btScalar kBrakePart = btScalar(0.7);
 
@@ -25,6 +30,7 @@ constexpr btScalar kBrakePart = btScalar(0.7);
 constexpr btScalar kWarmStart = btScalar(0.5);
 
 btScalar margin(int axis) { return axis < 3 ? kLinearMargin : kAngularMargin; }
+double at_stop(int axis) { return axis < 3 ? kLinearStop : kAngularStop; }
 
 // Compliance (per load, at rest) as softness (per impulse): the solver repairs erp/h of the error per second.
 btScalar softness(const AxisSettings& s, btScalar h) { return s.stop_cfm * s.stop_erp / (h * h); }
@@ -98,7 +104,8 @@ void JointConstraint::take_impulse(const Row& row, btScalar impulse, btScalar st
   if (row.kind == RowKind::motor || row.kind == RowKind::lock) last_impulse_[row.axis] = impulse;
   if (row.kind != RowKind::motor) return;
   motor_impulse_[row.axis] = impulse;
-  tick_impulse_[row.axis] += impulse;
+  const std::int8_t presses = presses_[row.axis];
+  tick_impulse_[row.axis] += presses > 0 ? row.upper : (presses < 0 ? row.lower : impulse);
   if (row.softness == 0) pair_inertia_[row.axis] = step;
 }
 
@@ -106,6 +113,8 @@ void JointConstraint::plan_rows() {
   row_count_ = 0;
   stiffness_applied_.fill(0);
   holds_spring_ = false;
+  presses_.fill(0);
+  outside_ = 0;
   // what may give comes first, what must hold comes last: the last row of a sweep is met exactly
   for (int axis = 0; axis < 6; ++axis) {
     if (!axes_[at(axis)].locked()) plan_motion(axis);
@@ -202,39 +211,80 @@ void JointConstraint::plan_limit(int axis, bool upper) {
 void JointConstraint::plan_motor(int axis) {
   const AxisSettings& s = axes_[at(axis)];
   const btScalar most = s.max_force * h_;
-  btScalar velocity = s.velocity;
-  if (s.drive == AxisDrive::servo) {
-    velocity = servo_velocity(axis);
-  } else if (s.limited()) {
-    // a spinning motor brakes before the limit instead of pressing through it; beyond it, it lets the limit repair
-    const btScalar to_upper = static_cast<btScalar>(static_cast<double>(s.upper) - value(axis)) / h_;
-    const btScalar to_lower = static_cast<btScalar>(static_cast<double>(s.lower) - value(axis)) / h_;
-    const btScalar up = to_upper < 0 ? to_upper * s.stop_erp : to_upper;
-    const btScalar down = to_lower > 0 ? to_lower * s.stop_erp : to_lower;
-    velocity = std::clamp(velocity, down, up);
-  }
+  const btScalar velocity = s.drive == AxisDrive::servo ? servo_velocity(axis) : spin_velocity(axis);
   add_row(axis, velocity, 0, -most, most, RowKind::motor);
 }
 
+// A motor that meets a limit asks for no more than the limit allows: the motion is that of a motor that presses with
+// its full force and of a limit that reacts, without the two large impulses that sweeps would have to balance. What it
+// presses with is counted in take_impulse(). A limit that yields is left to the motor as far as its force bends it.
+btScalar JointConstraint::spin_velocity(int axis) {
+  const AxisSettings& s = axes_[at(axis)];
+  if (!s.limited()) return s.velocity;
+  const btScalar to_upper = static_cast<btScalar>(static_cast<double>(s.upper) - value(axis)) / h_;
+  const btScalar to_lower = static_cast<btScalar>(static_cast<double>(s.lower) - value(axis)) / h_;
+  if (s.stop_cfm > 0 && s.velocity != 0) {
+    const btScalar bend = s.stop_cfm * s.max_force / h_;
+    return s.velocity > 0 ? std::min(s.velocity, std::max(to_upper + bend, btScalar(0)))
+                          : std::max(s.velocity, std::min(to_lower - bend, btScalar(0)));
+  }
+  const btScalar up = to_upper < 0 ? to_upper * s.stop_erp : to_upper;
+  const btScalar down = to_lower > 0 ? to_lower * s.stop_erp : to_lower;
+  if (s.velocity > 0 && s.velocity > up) presses_[at(axis)] = 1;
+  if (s.velocity < 0 && s.velocity < down) presses_[at(axis)] = -1;
+  return std::clamp(s.velocity, down, up);
+}
+
+// The servo follows its target's way through the tick (AxisGoals): feed-forward of the target's velocity plus a part of
+// the error. Of the velocity it trusts what the target had in the last tick, too; where the target may stop at once, it
+// goes no faster than its force can brake.
 btScalar JointConstraint::servo_velocity(int axis) {
   const AxisSettings& s = axes_[at(axis)];
-  const float target = s.limited() ? std::clamp(s.target, s.lower, s.upper) : s.target;
-  double error = static_cast<double>(target) - value(axis);
-  if (axis >= 3 && s.free()) error = std::remainder(error, 2 * kPi);
-  const btScalar way = static_cast<btScalar>(std::fabs(error));
-  const btScalar limit = std::fabs(s.velocity);
-  btScalar speed = way / h_ * (limit > 0 ? kServoGain : kEagerServoGain);
-  if (limit > 0) speed = std::min(speed, limit);
+  const double h = static_cast<double>(h_);
+  const GoalStep step = goals_.advance(axis, s.target, h, steps_left_);
+  double least = static_cast<double>(s.lower);
+  double most = static_cast<double>(s.upper);
+  if (s.limited()) {
+    const bool above = s.target > most + kOutside * (1 + std::fabs(most));
+    const bool below = s.target < least - kOutside * (1 + std::fabs(least));
+    if (above || below) outside_ = static_cast<std::uint8_t>(outside_ | 1u << axis);
+    const double room = above ? most - value(axis) : value(axis) - least;
+    if (s.stop_cfm == 0 && (above || below) && room < at_stop(axis)) presses_[at(axis)] = above ? 1 : -1;
+    // a limit that yields is bent as far as the force goes
+    const double bend = static_cast<double>(s.stop_cfm) * static_cast<double>(s.max_force);
+    least -= bend;
+    most += bend;
+  }
+  const auto within = [&](double position) { return s.limited() ? std::clamp(position, least, most) : position; };
+  const double goal = within(step.to);
+  const double limit = std::fabs(static_cast<double>(s.velocity));
+  const double gain = limit > 0 ? kServoGain : kEagerServoGain;
 
-  // never faster than the force can brake within the way that is left after this step: v² = 2·a·(way - v·h)
+  const double rate = (goal - within(step.from)) / h;
+  const double known = 2 * step.last_rate;
+  double trusted = rate * known > 0 ? (std::fabs(rate) < std::fabs(known) ? rate : known) : 0;
+  if (limit > 0) trusted = std::clamp(trusted, -limit, limit);
+  // a jump of the target takes at least as many steps as its error would
+  const double ahead = (rate - trusted) * std::min(1.0, gain * step_count_);
+  const double error = goal - value(axis) - trusted * h;
+  double beyond = ahead + gain * (error / h - ahead);
+  const double end = within(step.end) - value(axis) - trusted * h * steps_left_;
+  const double way = beyond > 0 ? std::max(error, end) : std::max(-error, -end);
+  const double fastest = static_cast<double>(braking_speed(axis, static_cast<btScalar>(std::max(way, 0.0))));
+  beyond = std::clamp(beyond, -fastest, fastest);
+  const double velocity = trusted + beyond;
+  return static_cast<btScalar>(limit > 0 ? std::clamp(velocity, -limit, limit) : velocity);
+}
+
+// Never faster than the force can brake within the way that is left after this step: v² = 2·a·(way - v·h).
+btScalar JointConstraint::braking_speed(int axis, btScalar way) {
   learn_inertia(axis);
   const btScalar inertia = learnt_inertia_[at(axis)];
-  if (inertia > 0 && s.max_force > 0) {
-    const btScalar slowing = kBrakePart * s.max_force / inertia * h_;
-    const btScalar whole = 2 * way / h_;
-    speed = std::min(speed, slowing * whole / (slowing + std::sqrt(slowing * (slowing + whole))));
-  }
-  return error < 0 ? -speed : speed;
+  const btScalar max_force = axes_[at(axis)].max_force;
+  if (!(inertia > 0 && max_force > 0)) return SIMD_INFINITY;
+  const btScalar slowing = kBrakePart * max_force / inertia * h_;
+  const btScalar whole = 2 * way / h_;
+  return slowing * whole / (slowing + std::sqrt(slowing * (slowing + whole)));
 }
 
 // What a motor moves is more than its two parts: a saturated motor's impulse and the speed it won tell.
@@ -259,7 +309,8 @@ void JointConstraint::plan_spring(int axis) {
   const btScalar stiffness = capped_stiffness(axis);
   stiffness_applied_[at(axis)] = stiffness;
   holds_spring_ = holds_spring_ || stiffness < btScalar(0.999) * s.stiffness;
-  const btScalar stretch = static_cast<btScalar>(static_cast<double>(s.rest) - value(axis));
+  const GoalStep step = goals_.advance(axis, s.rest, static_cast<double>(h_), steps_left_);
+  const btScalar stretch = static_cast<btScalar>(step.to - value(axis));
   const btScalar impulse = stiffness * stretch * h_;
   if (s.spring_damping > 0) {
     const btScalar soft = 1 / std::max(s.spring_damping * h_, btScalar(1e-18));

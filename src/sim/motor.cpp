@@ -20,7 +20,7 @@ using namespace rows;
 struct AxisRows {
   std::array<const Row*, 2> active, velocity, max_force, servo_active, servo_position, spring_active, rest, stiffness,
       damping;
-  const Row *bounce, *passive_damping;
+  const Row *bounce, *passive_damping, *smoothing;
 };
 
 const AxisRows& axis_rows() {
@@ -35,7 +35,8 @@ const AxisRows& axis_rows() {
                               {at("linear_spring_stiffness"), at("angular_spring_stiffness")},
                               {at("linear_spring_damping"), at("angular_spring_damping")},
                               at("bounce"),
-                              at("damping")};
+                              at("damping"),
+                              at("target_smoothing")};
   return found;
 }
 
@@ -71,7 +72,8 @@ void add_axes(std::vector<Row>& out, const std::string& side, bool angular) {
   out.push_back(
       axis_numbers("max_" + side + "_force", force, 10000, 0, 1e9, "Most that a spin or servo applies " + where + "."));
   out.push_back(axis_flags(side + "_servo_active", "Servo on " + where + " (needs the motor active)."));
-  out.push_back(axis_goals(side + "_servo_position", length, "Where a servo goes " + where + "."));
+  out.push_back(axis_goals(side + "_servo_position", length,
+                           "Where a servo goes " + where + (angular ? "; full turns count." : ".")));
   out.push_back(axis_flags(side + "_spring_active", "Spring on " + where + "; spin and servo are off then."));
   out.push_back(axis_goals(side + "_spring_rest_length", length, "Where a spring rests " + where + "."));
   out.push_back(axis_numbers(side + "_spring_stiffness", stiffness, 0, 0, 1e6, "Spring stiffness " + where + "."));
@@ -94,19 +96,28 @@ const Table& Motor::table() {
         choice("mode", {"off", "spin", "servo", "spring"}, 2,
                "What is in force on the own axis; setting it sets the three flags.")))));
     list.push_back(refuse<&Motor::refuse_own_axis>(state(view<&Motor::read_target, &Motor::write_target>(
-        number("target", "m | rad", 0, -1e4, 1e4, "Where the own axis's servo or spring goes.")))));
+        number("target", "m | rad", 0, -1e4, 1e4,
+               "Where the own axis's servo or spring goes; full turns count: 20π is ten.")))));
     list.push_back(refuse<&Motor::refuse_own_axis>(state(view<&Motor::read_speed, &Motor::write_speed>(
         number("speed", "m/s | rad/s", 0, -1e4, 1e4, "Speed of the own axis's spin; how fast its servo may go.")))));
     list.push_back(effect<&Motor::effect_axes>(
         number("bounce", "", 0, 0, 1, "What a limit gives back: met at speed v, it is left at −bounce·v.")));
     list.push_back(effect<&Motor::effect_axes>(
         number("damping", "N·s/m | N·m·s/rad", 0, 0, 1e6, "Passive damping of every free axis in any mode.")));
+    list.push_back(effect<&Motor::effect_axes>(number(
+        "target_smoothing", "s", 0, 0, 2,
+        "Smooths targets that arrive at irregular times, best over two periods of the stream; motion is later by 1.5 "
+        "times this and up to three ticks. 0: a target is reached in one tick.")));
     add_axes(list, "linear", false);
     add_axes(list, "angular", true);
     list.push_back(view<&Motor::read_force>(
-        applied("applied_force", "N", "What motors and springs applied along each axis, mean of the last tick.")));
+        applied("applied_force", "N",
+                "What motors and springs applied along each axis, mean of the last tick; at a stop, "
+                "what presses against it.")));
     list.push_back(view<&Motor::read_torque>(
-        applied("applied_torque", "N·m", "What motors and springs applied about each axis, mean of the last tick.")));
+        applied("applied_torque", "N·m",
+                "What motors and springs applied about each axis, mean of the last tick; at a stop, "
+                "what presses against it.")));
     return Table("motor", "/physics/body/<body>/motor/<motor>", "/physics/motor", std::move(list), &Motor::fetch);
   }();
   return table;
@@ -191,6 +202,7 @@ void Motor::lead_to(const Vec3& target, double most) {
 
 void Motor::hold_here() {
   for (int axis = 0; axis < 6; axis++) hold_[at(axis)] = constraint_.value(axis);
+  constraint_.restart_goals();
 }
 
 void Motor::follow() {
@@ -227,6 +239,12 @@ void Motor::effect_axes() {
   constraint_.set_bounce(store.values(id_, *rows.bounce)[0]);
   constraint_.set_damping(store.values(id_, *rows.passive_damping)[0]);
   if (constraint_.bounce() != bounce || constraint_.damping() != damping) joint_.wake();
+  const double smoothing = store.values(id_, *rows.smoothing)[0];
+  if (constraint_.smoothing() != smoothing) {
+    joint_.wake();
+    const BulletMemory::Scope scope(&joint_.body().world().bullet_memory());
+    constraint_.set_smoothing(smoothing);
+  }
   effect_goals();
 }
 
@@ -278,6 +296,23 @@ void Motor::say_cap() {
     const double substeps = std::ceil(joint_.body().world().timestep() / std::max(h, 1e-9));
     log_warning("motor '{}/{}': a spring of {} is held at {:.4g} to stay stable; about {} substeps would allow it",
                 joint_.body().name(), name(), wanted, constraint_.stiffness_applied(axis), substeps);
+    return;
+  }
+}
+
+void Motor::warn_outside() {
+  // a follower's target is its leader's; its own limits are another matter
+  if (joint_.spec().mimic || std::exchange(warned_outside_, true)) return;
+  for (int axis = 0; axis < 6; axis++) {
+    if (!constraint_.target_outside(axis)) continue;
+    const AxisSettings& s = constraint_.axis(axis);
+    const char* const names[] = {"x", "y", "z"};
+    const bool angular = axis >= 3;
+    const std::string which =
+        axis == joint_.own_axis() ? "" : fmt::format("{} {} ", angular ? "about" : "along", names[axis % 3]);
+    log_warning("motor '{}/{}': target {:.4g} {} {}is outside the limits {:.4g}..{:.4g}{}", joint_.body().name(),
+                name(), s.target, angular ? "rad" : "m", which, s.lower, s.upper,
+                angular ? "; angles are radians" : "");
     return;
   }
 }

@@ -32,7 +32,8 @@ class Motor {
   void set_target(double target);
 
   /// Sets each angular axis that is a servo or spring, through the door, on the way from where the joint is to `target`
-  /// (rad, the joint's own order), at most `most` ahead; on a free axis the shorter way round.
+  /// (rad, the joint's own order), at most `most` ahead; on a free axis to the nearest angle that differs from `target`
+  /// by full turns.
   void lead_to(const Vec3& target, double most);
 
   /// Where the joint is now is what a panic that holds motors holds.
@@ -41,6 +42,8 @@ class Motor {
   void follow();
   /// A spring of it was held below its stiffness: said once, with the cure.
   void say_cap();
+  /// Warns once that the target of a servo is outside the joint's limits.
+  void warn_outside();
 
   // What the rows do and read; public because the table, which is no member, names them.
   void effect_axes();
@@ -74,6 +77,7 @@ class Motor {
   std::array<double, 6> hold_{};
   bool said_contradiction_ = false;
   bool said_cap_ = false;
+  bool warned_outside_ = false;
 };
 
 }  // namespace limber

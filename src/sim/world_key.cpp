@@ -81,7 +81,8 @@ void WorldKey::pass(KeyBytes& key, Body& body) {
   key.pass_all(body.last_good_, body.good_poses_, body.restored_once_, body.broken_);
   for (const auto& part : body.parts_) key.pass_all(part->start_, part->reports_);
   for (const auto& joint : body.joints_) key.pass_all(joint->open_, joint->in_world_, joint->start_angles_);
-  for (const auto& motor : body.motors_) key.pass_all(motor->said_contradiction_, motor->said_cap_, motor->hold_);
+  for (const auto& motor : body.motors_)
+    key.pass_all(motor->said_contradiction_, motor->said_cap_, motor->warned_outside_, motor->hold_);
 }
 
 void WorldKey::pass(KeyBytes& key, Behavior& behavior) {

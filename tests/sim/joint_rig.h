@@ -62,7 +62,7 @@ inline AxisSettings limited_axis(double lower, double upper) {
 }
 inline AxisSettings servo_axis(AxisSettings s, double target, double speed, double force) {
   s.drive = AxisDrive::servo;
-  s.target = static_cast<float>(target);
+  s.target = target;
   s.velocity = static_cast<float>(speed);
   s.max_force = static_cast<float>(force);
   return s;
@@ -75,7 +75,7 @@ inline AxisSettings spin_axis(AxisSettings s, double speed, double force) {
 }
 inline AxisSettings spring_axis(AxisSettings s, double rest, double stiffness, double damping = 0) {
   s.drive = AxisDrive::spring;
-  s.rest = static_cast<float>(rest);
+  s.rest = rest;
   s.stiffness = static_cast<float>(stiffness);
   s.spring_damping = static_cast<float>(damping);
   return s;

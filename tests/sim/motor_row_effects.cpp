@@ -239,6 +239,20 @@ void speed() {
   }
 }
 
+// A ramp of targets comes out as the same ramp, later by 1.5 times the smoothing and three ticks.
+void target_smoothing() {
+  for (const JointType type : {JointType::revolute, JointType::prismatic}) {
+    Own o(type);
+    o.set(o.motor.id(), "target_smoothing", {0.1});
+    for (int i = 1; i <= 120; i++) {
+      o.set(o.motor.id(), "target", {0.5 * i / 60});
+      o.ticks(1);
+    }
+    EXPECT_NEAR(o.x(), 1 - 0.5 * (0.15 + 3.0 / 60), 2e-3);
+    EXPECT_NEAR(o.v(), 0.5, 2e-3);
+  }
+}
+
 }  // namespace
 
 void add_motor_effects(RowEffects& effects) {
@@ -262,6 +276,7 @@ void add_motor_effects(RowEffects& effects) {
   effects[{"Motor", "speed"}] = speed;
   effects[{"Motor", "bounce"}] = bounce;
   effects[{"Motor", "damping"}] = damping;
+  effects[{"Motor", "target_smoothing"}] = target_smoothing;
 }
 
 }  // namespace limber::test

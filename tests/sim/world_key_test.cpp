@@ -76,6 +76,29 @@ TEST(WorldKey, JointsSolvedDirectlyComeBackToTheBit) {
   key.release(pages);
 }
 
+// targets that are smoothed from before the key state on, and from behind it on
+TEST(WorldKey, SmoothedTargetsComeBackToTheBit) {
+  Played s;
+  heap(s, 3);
+  s.hands.emplace_back([&s](std::uint64_t tick) {
+    for (const int arm : {0, 1}) {
+      if (tick != (arm == 0 ? 20u : 60u)) continue;
+      for (const auto& motor : s.world.find_body("arm" + std::to_string(arm))->motors()) {
+        s.set(motor->id(), "target_smoothing", {0.1});
+      }
+    }
+  });
+  s.play(40);
+  PageStore pages;
+  KeyBytes scratch;
+  WorldKey key;
+  key.take(s.world, pages, nullptr, scratch);
+  const std::vector<std::uint64_t> first = s.hashes(60);
+  key.bring_back(s.world, pages, scratch);
+  EXPECT_EQ(s.hashes(60), first);
+  key.release(pages);
+}
+
 TEST(WorldKey, ContactsOfAHeapComeBackToTheBit) {
   Played s;
   heap(s, 40);
