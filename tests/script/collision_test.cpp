@@ -23,8 +23,8 @@ local function pairs_of(x)
 end
 )";
 
-std::string value(const std::string& expression) { return value_of(expression, kPair); }
-std::string failure(const std::string& text) { return error_of(std::string(kPair) + "\n" + text); }
+std::string pair_value(const std::string& expression) { return value_of(expression, kPair); }
+std::string pair_failure(const std::string& text) { return error_of(std::string(kPair) + "\n" + text); }
 
 TEST(ExcludedPairs, AreListedAndEdited) {
   Stage stage;
@@ -50,9 +50,9 @@ sim:after(0.15, function() print("undone", pairs_of(body)) end)
 }
 
 TEST(ExcludedPairs, WrongPartsAreErrors) {
-  EXPECT_NE(failure("body:exclude_pair(a, a)").find("two different parts"), std::string::npos);
-  EXPECT_NE(failure("body:exclude_pair(a, 'd')").find("no part 'd'"), std::string::npos);
-  EXPECT_NE(failure("body.excluded_pairs = {}").find("can be read, not set"), std::string::npos);
+  EXPECT_NE(pair_failure("body:exclude_pair(a, a)").find("two different parts"), std::string::npos);
+  EXPECT_NE(pair_failure("body:exclude_pair(a, 'd')").find("no part 'd'"), std::string::npos);
+  EXPECT_NE(pair_failure("body.excluded_pairs = {}").find("can be read, not set"), std::string::npos);
 }
 
 TEST(ExcludedPairs, IncludingAJointedPairIsReported) {
@@ -64,7 +64,7 @@ TEST(ExcludedPairs, IncludingAJointedPairIsReported) {
 }
 
 TEST(CollisionGroups, TakeNamesAndNumbers) {
-  EXPECT_EQ(value("a.collision_group, a.collision_mask, table.concat(sim.collision_groups, ' ')"),
+  EXPECT_EQ(pair_value("a.collision_group, a.collision_mask, table.concat(sim.collision_groups, ' ')"),
             "1\t65535\trobot floor ghost");
   const auto after = [](const std::string& line) {
     return value_of("a.collision_group, a.collision_mask", std::string(kPair) + line + "\n");
@@ -75,13 +75,13 @@ TEST(CollisionGroups, TakeNamesAndNumbers) {
 }
 
 TEST(CollisionGroups, WrongNamesAreErrors) {
-  EXPECT_NE(failure("a.collision_group = 'flor'").find("has no 'flor'; did you mean 'floor'?"), std::string::npos);
-  EXPECT_NE(failure("a.collision_mask = true").find("takes a number, a name of sim.collision_groups"),
+  EXPECT_NE(pair_failure("a.collision_group = 'flor'").find("has no 'flor'; did you mean 'floor'?"), std::string::npos);
+  EXPECT_NE(pair_failure("a.collision_mask = true").find("takes a number, a name of sim.collision_groups"),
             std::string::npos);
-  EXPECT_NE(failure("sim.collision_groups = { 'a', 'a' }").find("'a' is there twice"), std::string::npos);
+  EXPECT_NE(pair_failure("sim.collision_groups = { 'a', 'a' }").find("'a' is there twice"), std::string::npos);
   std::string many = "sim.collision_groups = { ";
   for (int i = 0; i < 17; i++) many += "'g" + std::to_string(i) + "', ";
-  EXPECT_NE(failure(many + "}").find("at most 16 names"), std::string::npos);
+  EXPECT_NE(pair_failure(many + "}").find("at most 16 names"), std::string::npos);
   EXPECT_NE(error_of("sim:add_body('b'):add_part('p', sim:add_sphere_shape('s', 1)).collision_group = 'x'")
                 .find("name the groups first"),
             std::string::npos);
