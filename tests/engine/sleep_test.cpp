@@ -51,7 +51,11 @@ const Message3 kMessages[] = {
     {"hold", [](Show& show) { show.send("/physics/part/hold", "box1", "p", 0, 0, 0, 1, 0, 1); }},
     {"target", [](Show& show) { show.send("/physics/motor/target", "beam", 0.1); }},
     {"preset", [](Show& show) { show.send("/preset/recall", "before"); }},
-    {"morph", [](Show& show) { show.send("/preset/recall", "before", 0.5); }},
+    {"morph",
+     [](Show& show) {
+       show.send("/preset/recall", "before", 0.5);
+       show.ticks(1);  // it begins where the values are
+     }},
     {"undo", [](Show& show) { show.send("/edit/undo"); }},
     {"behavior", [](Show& show) { show.send("/physics/behavior/parameter", "wind", "amp", 0.1); }},
     {"enabled", [](Show& show) { show.send("/physics/body/box1/enabled", 0); }},

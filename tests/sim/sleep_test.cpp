@@ -293,6 +293,27 @@ TEST(SlowMotion, ASpinOfAHundredthRadianPerSecond) {
   EXPECT_NEAR(s.x(), 0.1, 1e-3);
 }
 
+TEST(SlowMotion, ASpinThatIsSlowerThanWhatCountsAsRest) {
+  OneAxis s(5);
+  s.set(s.motor.id(), "mode", {1});
+  s.of_motor("velocity", 4e-6);
+  s.ticks(300);
+  EXPECT_NEAR(s.x(), 2e-5, 2e-6);
+  EXPECT_EQ(asleep(s), 0);
+}
+
+TEST(SlowMotion, ASpinAgainstAStopSleepsOnlyWhenItsSpeedIsZero) {
+  OneAxis s(5);
+  s.limits(-0.1, 0.1);
+  s.set(s.motor.id(), "mode", {1});
+  s.of_motor("velocity", 1);
+  s.ticks(120);
+  EXPECT_EQ(asleep(s), 0);
+  s.of_motor("velocity", 0);
+  s.ticks(120);
+  EXPECT_EQ(asleep(s), 1);
+}
+
 TEST(SlowMotion, AServoWhoseSpeedLimitIsTiny) {
   OneAxis s(5);
   s.set(s.motor.id(), "mode", {2});
