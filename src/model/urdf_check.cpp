@@ -1,6 +1,7 @@
 // The pass over the whole document: root, links, joints, materials, and what is there but not used.
 #include "model/urdf_check.h"
 
+#include <array>
 #include <map>
 #include <set>
 #include <string>
@@ -18,6 +19,10 @@ namespace {
 using Element = tinyxml2::XMLElement;
 
 constexpr std::size_t kShownName = 40;
+
+constexpr std::array<std::string_view, 16> kElements{
+    "link",  "joint", "material", "inertial", "visual", "collision", "origin",  "parent",
+    "child", "axis",  "limit",    "dynamics", "mimic",  "geometry",  "inertia", "mass"};
 
 const char* cure_of(tinyxml2::XMLError error) {
   switch (error) {
@@ -129,6 +134,11 @@ class Check {
     odd_name(element, "link", name);
     file_.links.push_back(reader_.link(element, name));
     count_unused(element, {"inertial", "visual", "collision"});
+    for (const Element* e = element.FirstChildElement(); e; e = e->NextSiblingElement()) {
+      const std::string_view kind = reader_.name_of(*e);
+      if (kind == "inertial") count_unused(*e, {"origin", "mass", "inertia"});
+      if (kind == "visual" || kind == "collision") count_unused(*e, {"origin", "geometry", "material"});
+    }
   }
 
   void joint(const Element& element) {
@@ -279,7 +289,10 @@ class Check {
       const bool xacro = kind.starts_with("xacro:");
       const std::string text =
           fmt::format("{} <{}> element{} not used", seen.first, printable(kind), seen.first == 1 ? " is" : "s are");
-      if (xacro) {
+      const std::string_view meant = nearest_name(kind, kElements);
+      if (!meant.empty() && meant != kind) {
+        problems_.warning(seen.second, text, fmt::format("Did you mean <{}>?", meant));
+      } else if (xacro) {
         problems_.error(seen.second, text, "This is a xacro file: run xacro on it first.");
       } else {
         problems_.note(seen.second, text, "Nothing to do, unless you counted on it.");

@@ -1,5 +1,8 @@
 // Collision shapes of the whole body: links that overlap at the home pose, links without collision geometry, meshes
 // whose convex hull fills a hollow.
+#include <algorithm>
+#include <cmath>
+#include <map>
 #include <set>
 #include <string>
 #include <utility>
@@ -8,6 +11,7 @@
 #include <fmt/format.h>
 
 #include "base/text.h"
+#include "model/mass_properties.h"
 #include "model/overlap.h"
 #include "model/urdf_build.h"
 
@@ -18,6 +22,26 @@ namespace {
 constexpr std::size_t kShownLinks = 8;
 // A hull this many times as large as its mesh fills a hollow.
 constexpr double kHollowRatio = 1.2;
+
+constexpr std::size_t kMaxHollowIndices = 60'000;  // of a mesh whose edges are compared
+
+// What the triangles enclose, m³, for a mesh of several joined solids too: each edge must run as often one way as the
+// other. 0 where they enclose nothing, or are too many to compare.
+double enclosed_volume(const MeshModel& mesh) {
+  if (mesh.closed) return mesh.solid.mass;
+  const std::vector<unsigned>& corners = mesh.triangles;
+  if (corners.size() > kMaxHollowIndices) return 0;
+  std::map<std::pair<unsigned, unsigned>, int> balance;
+  for (std::size_t i = 0; i + 2 < corners.size(); i += 3) {
+    for (std::size_t k = 0; k < 3; ++k) {
+      const unsigned from = corners[i + k];
+      const unsigned to = corners[i + (k + 1) % 3];
+      balance[std::minmax(from, to)] += from < to ? 1 : -1;
+    }
+  }
+  const bool open = std::any_of(balance.begin(), balance.end(), [](const auto& edge) { return edge.second != 0; });
+  return open ? 0 : std::abs(solid_of(mesh.vertices, corners).mass);
+}
 
 int line_of_link(const UrdfBuild& build, int link) {
   for (std::size_t node = 0; node < build.tree.size(); ++node) {
@@ -83,12 +107,12 @@ void check_hollow_meshes(UrdfBuild& build) {
   for (std::size_t i = 0; i < build.model.links.size(); ++i) {
     for (const PlacedShape& placed : build.model.links[i].collisions) {
       const MeshModel* const mesh = placed.shape.mesh.get();
-      if (mesh == nullptr || !mesh->closed) continue;
-      if (mesh->hull_volume <= kHollowRatio * mesh->solid.mass || count++ > 0) continue;
+      if (mesh == nullptr) continue;
+      const double volume = enclosed_volume(*mesh);
+      if (volume <= 0 || mesh->hull_volume <= kHollowRatio * volume || count++ > 0) continue;
       line = line_of_link(build, static_cast<int>(i));
       text = fmt::format("link '{}': the convex hull of collision mesh '{}' fills its hollows: {:.3g} times its volume",
-                         printable(build.model.links[i].name), printable(mesh->name),
-                         mesh->hull_volume / mesh->solid.mass);
+                         printable(build.model.links[i].name), printable(mesh->name), mesh->hull_volume / volume);
     }
   }
   if (count == 0) return;

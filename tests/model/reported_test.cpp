@@ -62,6 +62,22 @@ TEST(Reported, MisspelledAttributes) {
   EXPECT_TRUE(hinted) << all_problems(m);
 }
 
+TEST(Reported, MisspelledElements) {
+  const BodyModel m = import_text(R"(<robot name="r"><link name="a"><colision/>
+<collision><orign xyz="1 0 0"/><geometry><box size="1 1 1"/></geometry></collision>
+<contact/><inertial><mass value="1"/><inertia ixx="1" ixy="0" ixz="0" iyy="1" iyz="0" izz="1"/></inertial></link>
+<gazebo/><transmission/><sensor/></robot>)");
+  EXPECT_TRUE(says(m, Severity::warning, "1 <colision> element is not used", 1)) << all_problems(m);
+  EXPECT_TRUE(says(m, Severity::warning, "1 <orign> element is not used", 2)) << all_problems(m);
+  EXPECT_NE(all_problems(m).find("Did you mean <collision>?"), std::string::npos);
+  for (const char* const kind : {"<contact>", "<gazebo>", "<transmission>", "<sensor>"}) {
+    bool note = false;
+    for (const Problem& p : m.problems)
+      note = note || (p.severity == Severity::note && p.text.find(kind) != std::string::npos);
+    EXPECT_TRUE(note) << kind << '\n' << all_problems(m);
+  }
+}
+
 TEST(Reported, UndefinedMaterials) {
   const BodyModel m = import_text(R"(<robot name="r"><material name="red"><color rgba="1 0 0 1"/></material>
 <link name="a"><visual><geometry><sphere radius="1"/></geometry><material name="rde"/></visual>
@@ -97,6 +113,14 @@ TEST(Reported, HullsThatFillAHollow) {
   const BodyModel cup = import("cup.stl");
   EXPECT_TRUE(says(cup, Severity::warning, "'cup' fills its hollows: ", 2)) << all_problems(cup);
   EXPECT_TRUE(says(cup, Severity::warning, "… and 1 more of this kind", 2)) << all_problems(cup);
+  // a trough of three boxes that share edges: its hull is a box
+  test::Solid trough = test::box({0.4, 0.4, 0.04});
+  trough.add(test::box({0.04, 0.4, 0.26}).moved({{0.18, 0, 0.15}, quat_identity()}));
+  trough.add(test::box({0.04, 0.4, 0.26}).moved({{-0.18, 0, 0.15}, quat_identity()}));
+  files.write("trough.stl", test::binary_stl(trough));
+  const BodyModel joined = import("trough.stl");
+  EXPECT_TRUE(says(joined, Severity::warning, "'trough' fills its hollows: 3.26 times its volume", 2))
+      << all_problems(joined);
   const BodyModel solid = import("solid.stl");
   ASSERT_EQ(solid.links.size(), 1u);
   EXPECT_EQ(all_problems(solid).find("hollow"), std::string::npos) << all_problems(solid);
