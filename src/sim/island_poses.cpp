@@ -9,7 +9,7 @@ namespace limber {
 namespace {
 
 /// What a joint may gape by beyond its goal before it is worth the work, m; and what is as good as closed.
-constexpr double kWorthClosing = 1e-3;
+constexpr double kWorthClosing = 2e-4;
 constexpr double kClosed = 1e-4;
 /// So often the way there is taken, each time from where the one before led.
 constexpr int kClosings = 8;
