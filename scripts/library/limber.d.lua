@@ -276,6 +276,9 @@ function body_:state_hash() end
 ---@field angular_damping number # 1/s, 0 .. 1, default 0. Fraction of the angular velocity lost per second.
 ---@field friction number # 0 .. 100, default 0.5. Coulomb friction; the values of two touching parts multiply.
 ---@field rolling_friction number # m, 0 .. 100, default 0. Resistance to rolling; the values of two touching parts are mixed.
+---@field spinning_friction number # m, 0 .. 100, default 0. Resistance to spinning about the contact's normal; mixed like rolling friction.
+---@field friction_direction vec3like # -1 .. 1. Direction, link frame, in which friction is scaled by friction_factor; zeros: in none.
+---@field friction_factor number # 0 .. 100, default 1. Friction along friction_direction as a multiple of that across it.
 ---@field restitution number # 0 .. 1, default 0. What a bounce gives back; the values of two touching parts multiply.
 ---@field self_collision boolean # default true. Whether it collides with other parts of its body.
 ---@field collision_group integer # 0 .. 65535, default 1. The groups it is in, a bit each (16). Two parts collide if each one's group has a bit in the other's mask.
@@ -296,6 +299,9 @@ local part_ = {}
 ---@field angular_damping? number # 1/s, 0 .. 1, default 0. Fraction of the angular velocity lost per second.
 ---@field friction? number # 0 .. 100, default 0.5. Coulomb friction; the values of two touching parts multiply.
 ---@field rolling_friction? number # m, 0 .. 100, default 0. Resistance to rolling; the values of two touching parts are mixed.
+---@field spinning_friction? number # m, 0 .. 100, default 0. Resistance to spinning about the contact's normal; mixed like rolling friction.
+---@field friction_direction? vec3like # -1 .. 1. Direction, link frame, in which friction is scaled by friction_factor; zeros: in none.
+---@field friction_factor? number # 0 .. 100, default 1. Friction along friction_direction as a multiple of that across it.
 ---@field restitution? number # 0 .. 1, default 0. What a bounce gives back; the values of two touching parts multiply.
 ---@field self_collision? boolean # default true. Whether it collides with other parts of its body.
 ---@field collision_group? integer # 0 .. 65535, default 1. The groups it is in, a bit each (16). Two parts collide if each one's group has a bit in the other's mask.

@@ -14,6 +14,8 @@ namespace {
 /// Among others that would cost more, since contacts are looked for with all that a box meets. What jumps by more than
 /// its own size will not jump on.
 constexpr btScalar kStepsAhead = 2;
+/// No box is extended along its object's motion by more than this, m: what is faster is beyond what contacts can hold.
+constexpr btScalar kFarthestAhead = 10;
 /// So many ahead the memory of what has left its box is asked for, and then of its place in the tree: who looked at it,
 /// or moved it, may have been another processor.
 constexpr std::size_t kAhead = 8;
@@ -100,6 +102,19 @@ bool may_collide(const btBroadphaseProxy& a, const btBroadphaseProxy& b) {
   return first.checkCollideWith(&second) && second.checkCollideWith(&first);
 }
 
+// By as much of the way that the object moves in the step as is more than boxes reach ahead anyway: contacts that begin
+// within the step are found before it.
+void extend_along_motion(const btCollisionObject& object, btScalar h, btVector3& low, btVector3& high) {
+  if (object.isStaticObject()) return;
+  const btRigidBody* body = btRigidBody::upcast(&object);
+  if (body == nullptr) return;
+  const btVector3 way = body->getLinearVelocity() * h;
+  for (int k = 0; k < 3; k++) {
+    if (way[k] > gContactBreakingThreshold) high[k] += std::min(way[k] - gContactBreakingThreshold, kFarthestAhead);
+    if (way[k] < -gContactBreakingThreshold) low[k] += std::max(way[k] + gContactBreakingThreshold, -kFarthestAhead);
+  }
+}
+
 }  // namespace
 
 Broadphase::Broadphase(double margin, Team* team)
@@ -167,7 +182,7 @@ void Broadphase::look_anew(btBroadphaseProxy* of) {
   mark(proxy);
 }
 
-bool Broadphase::look(btCollisionObject& object) {
+bool Broadphase::look(btCollisionObject& object, btScalar h) {
   if (object.getBroadphaseHandle() == nullptr) return false;
   Proxy& proxy = *static_cast<Proxy*>(object.getBroadphaseHandle());
   if (proxy.leaf == nullptr) return proxy.look_at_plane();
@@ -175,6 +190,7 @@ bool Broadphase::look(btCollisionObject& object) {
   btVector3 high;
   object.getCollisionShape()->getAabb(object.getWorldTransform(), low, high);
   const btVector3 ahead(gContactBreakingThreshold, gContactBreakingThreshold, gContactBreakingThreshold);
+  extend_along_motion(object, h, low, high);
   const btVector3 before = proxy.m_aabbMin + proxy.m_aabbMax;
   proxy.m_aabbMin = low - ahead;
   proxy.m_aabbMax = high + ahead;

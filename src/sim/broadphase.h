@@ -35,8 +35,9 @@ class Broadphase : public btBroadphaseInterface {
   /// Who may collide with this one has changed: from the next step on its pairs are those that may.
   void look_anew(btBroadphaseProxy* proxy);
 
-  /// Has this one left its box, or was it moved though it stands? Then leave() is to follow. [any thread, each another]
-  static bool look(btCollisionObject& object);
+  /// Has this one left its box, or was it moved though it stands? Then leave() is to follow. `h`: the step's length, s;
+  /// a box reaches as far as its object will move in the step. [any thread, each another]
+  static bool look(btCollisionObject& object, btScalar h);
   /// Soon look() will be asked about it.
   static void fetch(const btCollisionObject& object);
   /// These have.

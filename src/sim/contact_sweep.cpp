@@ -3,6 +3,7 @@
 #include "sim/contact_sweep.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "base/check.h"
 #include "base/prefetch.h"
@@ -59,6 +60,11 @@ void ContactSweep::begin(btAlignedObjectArray<btSolverBody>& bodies, const btCon
     take(c, a_moves, contacts_[i]);
     take(friction[2 * i], a_moves, friction_[2 * i]);
     take(friction[2 * i + 1], a_moves, friction_[2 * i + 1]);
+    const float step = std::min(friction[2 * i].m_jacDiagABInv, friction[2 * i + 1].m_jacDiagABInv);
+    for (int k = 2 * i; k < 2 * i + 2; ++k) {
+      const float own = friction[k].m_jacDiagABInv;
+      friction_[k].push_wanted = own > 0 ? step / own : 1;
+    }
     Pair* const last = pairs_.size() > 0 ? &pairs_[pairs_.size() - 1] : nullptr;
     if (last != nullptr && last->a == c.m_solverBodyIdA && last->b == c.m_solverBodyIdB) {
       last->end = i + 1;
@@ -90,6 +96,40 @@ inline float ContactSweep::solve(Row& row, float wanted, float& impulse, float l
   v.linear_b -= row.normal * v.mass_b * change;
   v.angular_b += row.answer_b * change;
   return change[0] * change[0];
+}
+
+// What the row would need beside the impulse that it has; its softness is the direct solver's.
+inline float ContactSweep::free_impulse(const Row& row, const PairVelocity& v) {
+  const Lanes speeds = sums_of_three(row.normal * v.linear_a, row.turn_a * v.angular_a, row.normal * v.linear_b,
+                                     row.turn_b * v.angular_b);
+  return row.normal[3] - ((speeds[0] + speeds[1]) + (speeds[3] - speeds[2])) * row.turn_a[3];
+}
+
+// Sticks where the disc has room for that. Where it slides, both rows take a step of one length against the slip and go
+// back onto the disc, so that friction ends up opposite to the slip. Returns the larger squared change.
+inline float ContactSweep::solve_friction(Row& first, Row& second, float pressing, PairVelocity& v) {
+  const float most = first.friction * pressing;
+  const float free_first = free_impulse(first, v);
+  const float free_second = free_impulse(second, v);
+  float along = first.impulse + free_first;
+  float across = second.impulse + free_second;
+  if (along * along + across * across > most * most) {
+    along = first.impulse + free_first * first.push_wanted;
+    across = second.impulse + free_second * second.push_wanted;
+    const float length2 = along * along + across * across;
+    const float part = length2 > most * most ? most / std::sqrt(length2) : 1.0F;
+    along *= part;
+    across *= part;
+  }
+  const float change_first = along - first.impulse;
+  const float change_second = across - second.impulse;
+  first.impulse = along;
+  second.impulse = across;
+  v.linear_a += (first.normal * change_first + second.normal * change_second) * v.mass_a;
+  v.angular_a += first.answer_a * change_first + second.answer_a * change_second;
+  v.linear_b -= (first.normal * change_first + second.normal * change_second) * v.mass_b;
+  v.angular_b += first.answer_b * change_first + second.answer_b * change_second;
+  return std::max(change_first * change_first, change_second * change_second);
 }
 
 // Calls work(contact, velocity) for each contact, with the velocity of its pair.
@@ -131,11 +171,7 @@ btScalar ContactSweep::sweep() {
   each_pair<PairVelocity>([&](int i, PairVelocity& v) {
     const float pressing = contacts_[i].impulse;
     if (!(pressing > 0)) return;
-    for (int k = 2 * i; k < 2 * i + 2; ++k) {
-      Row& row = friction_[k];
-      const float most = row.friction * pressing;
-      largest = std::max(largest, solve(row, row.normal[3], row.impulse, -most, most, v));
-    }
+    largest = std::max(largest, solve_friction(friction_[2 * i], friction_[2 * i + 1], pressing, v));
   });
   return largest;
 }

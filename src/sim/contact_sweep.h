@@ -8,8 +8,10 @@ namespace limber {
 
 /// Bullet sets up the rows; the sweeps take from them what they need, in 96 bytes a row instead of 160, with the rows
 /// of one pair of bodies behind each other, so that the pair's velocities are read and written once for all of them.
-/// The order is Bullet's, and so is every rounding: its impulses come out to the bit, where bodies may move and turn
-/// along every axis or not at all. Nothing is allocated once the largest island was seen. [sim]
+/// The order is Bullet's. Rows along the normals round as Bullet's do: their impulses come out to the bit, where bodies
+/// may move and turn along every axis or not at all. The two friction rows of a contact are solved together, within the
+/// disc that the cone of friction has at the normal's impulse; Bullet's square holds up to 1.41 times as much,
+/// depending on the heading. Nothing is allocated once the largest island was seen. [sim]
 class ContactSweep {
  public:
   /// Takes over an island's rows: contacts, each with a friction row in two directions, in the order of the contacts.
@@ -38,7 +40,7 @@ class ContactSweep {
     Lanes answer_b;
     float impulse;
     float friction;
-    float push_wanted;  // 0: does not penetrate
+    float push_wanted;  // 0: does not penetrate. Of friction: the smaller step of a contact's two rows, as part of this
     float push;
   };
   struct Pair {  // contacts first up to end, whose friction is at twice that
@@ -49,6 +51,8 @@ class ContactSweep {
   static void take(const btSolverConstraint& from, bool a_moves, Row& row);
   [[gnu::always_inline]] static float solve(Row& row, float wanted, float& impulse, float lower, float upper,
                                             PairVelocity& v);
+  [[gnu::always_inline]] static float free_impulse(const Row& row, const PairVelocity& v);
+  [[gnu::always_inline]] static float solve_friction(Row& first, Row& second, float pressing, PairVelocity& v);
   template <class Velocity, class Work>
   void each_pair(Work&& work);
 

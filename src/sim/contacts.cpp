@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "sim/contact_manifold.h"
 #include "sim/part.h"
 
 namespace limber {
@@ -12,6 +13,8 @@ namespace {
 Part* part_of(const btCollisionObject* object) { return static_cast<Part*>(object->getUserPointer()); }
 // farther than any point that counts as touching, m
 constexpr double kNoDepth = 1;
+// a contact has closed when its surfaces are at most this far apart, m
+constexpr btScalar kClosed = 1e-4F;
 }  // namespace
 
 Contacts::Pair& Contacts::pair_of(Part* a, Part* b) {
@@ -20,15 +23,16 @@ Contacts::Pair& Contacts::pair_of(Part* a, Part* b) {
   for (Pair& pair : pairs_) {
     if (pair.a == a && pair.b == b) return pair;
   }
-  pairs_.push_back({a, b, 0, kNoDepth, Vec3(0), false, false});
+  pairs_.push_back({a, b, 0, kNoDepth, Vec3(0), false, false, false, false});
   return pairs_.back();
 }
 
 void Contacts::begin_tick() {
   begun_.clear();
   for (Pair& pair : pairs_) {
-    pair.before = pair.now;
+    pair.before = pair.now && !pair.waits;
     pair.now = false;
+    if (pair.waits) continue;
     pair.impulse = 0;
     pair.depth = kNoDepth;
   }
@@ -36,18 +40,26 @@ void Contacts::begin_tick() {
 
 void Contacts::gather(btDispatcher& dispatcher) {
   if (reporting_ <= 0) return;
+  for (Pair& pair : pairs_) pair.closing = false;
   for (int i = 0; i < dispatcher.getNumManifolds(); i++) {
-    const btPersistentManifold& manifold = *dispatcher.getManifoldByIndexInternal(i);
+    btPersistentManifold& manifold = *dispatcher.getManifoldByIndexInternal(i);
     Part* a = part_of(manifold.getBody0());
     Part* b = part_of(manifold.getBody1());
     if (manifold.getNumContacts() == 0 || a == nullptr || b == nullptr) continue;
     if (!a->reports_contacts() && !b->reports_contacts()) continue;
     for (int k = 0; k < manifold.getNumContacts(); k++) {
-      const btManifoldPoint& point = manifold.getContactPoint(k);
+      btManifoldPoint& point = manifold.getContactPoint(k);
       if (point.getDistance() > 0 && point.getAppliedImpulse() <= 0) continue;
       Pair& pair = pair_of(a, b);
       pair.now = true;
-      pair.impulse += point.getAppliedImpulse();
+      if ((point.m_contactPointFlags & kContactClosed) == 0) {
+        pair.impulse += point.getAppliedImpulse();
+        if (point.getAppliedImpulse() > 0 && point.getDistance() <= kClosed) {
+          point.m_contactPointFlags |= kContactClosed;
+        } else if (point.getAppliedImpulse() > 0) {
+          pair.closing = true;
+        }
+      }
       if (point.getDistance() < pair.depth) {
         pair.depth = point.getDistance();
         pair.position = from_bt(point.getPositionWorldOnB());
@@ -57,12 +69,14 @@ void Contacts::gather(btDispatcher& dispatcher) {
 }
 
 void Contacts::end_tick() {
-  for (const Pair& pair : pairs_) {
-    if (!pair.now || pair.before) continue;
+  for (Pair& pair : pairs_) {
+    if (pair.before || (!pair.now && !pair.waits)) continue;
+    pair.waits = pair.closing && !pair.waits;
+    if (pair.waits) continue;
     if (pair.a->reports_contacts()) begun_.push_back({pair.a->id(), pair.b->id(), pair.impulse, pair.position});
     if (pair.b->reports_contacts()) begun_.push_back({pair.b->id(), pair.a->id(), pair.impulse, pair.position});
   }
-  std::erase_if(pairs_, [](const Pair& pair) { return !pair.now && !pair.before; });
+  std::erase_if(pairs_, [](const Pair& pair) { return !pair.now && !pair.before && !pair.waits; });
 }
 
 void Contacts::forget(const Part& part) {

@@ -17,8 +17,9 @@ class Part;
 struct ContactEvent {
   NodeId part;
   NodeId other;
-  double impulse = 0;  ///< Sum over the tick, N·s.
-  Vec3 position{0};    ///< World, of the deepest point.
+  double impulse =
+      0;  ///< Of the impact, N·s: the sum over its points until each has closed, without what they carry then.
+  Vec3 position{0};  ///< World, of the deepest point.
 };
 
 class Contacts {
@@ -28,7 +29,8 @@ class Contacts {
   void forget(const Part& part);
   /// Before the tick's first internal step.
   void begin_tick();
-  /// After each internal step: costs nothing while no part reports.
+  /// After each internal step: costs nothing while no part reports. A contact slows an approaching part down in the
+  /// step before it closes; an event waits for that, by a tick if the tick ends in between.
   void gather(btDispatcher& dispatcher);
   /// After the last: what began to touch.
   void end_tick();
@@ -44,6 +46,8 @@ class Contacts {
     Vec3 position;
     bool before;
     bool now;
+    bool closing;  // after the last internal step: a point has begun to press but has not closed
+    bool waits;    // it was so when the tick before ended; its event comes with this one
   };
   Pair& pair_of(Part* a, Part* b);
 

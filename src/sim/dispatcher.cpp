@@ -1,6 +1,8 @@
 // What a pair looks at hangs together by pointers, so it is asked for in three goes, each when the one before is there.
 #include "sim/dispatcher.h"
 
+#include "sim/contact_manifold.h"
+
 namespace limber {
 namespace {
 
@@ -51,6 +53,21 @@ void Dispatcher::find_awake(btBroadphasePairArray& pairs) {
   }
 }
 
+Dispatcher::Dispatcher(btCollisionConfiguration* configuration) : btCollisionDispatcher(configuration) {
+  algorithms_.install(*this);
+}
+
+void Dispatcher::find_contacts(btBroadphasePair& pair, const btDispatcherInfo& info) {
+  btCollisionObject& first = object(*pair.m_pProxy0);
+  btCollisionObject& second = object(*pair.m_pProxy1);
+  const btCollisionObjectWrapper a(nullptr, first.getCollisionShape(), &first, first.getWorldTransform(), -1, -1);
+  const btCollisionObjectWrapper b(nullptr, second.getCollisionShape(), &second, second.getWorldTransform(), -1, -1);
+  if (pair.m_algorithm == nullptr) pair.m_algorithm = findAlgorithm(&a, &b, nullptr, BT_CONTACT_POINT_ALGORITHMS);
+  if (pair.m_algorithm == nullptr) return;
+  ContactResult result(&a, &b);
+  pair.m_algorithm->processCollision(&a, &b, info, &result);
+}
+
 void Dispatcher::dispatchAllCollisionPairs(btOverlappingPairCache* cache, const btDispatcherInfo& info, btDispatcher*) {
   find_awake(cache->getOverlappingPairArray());
   const int count = awake_.size();
@@ -59,7 +76,7 @@ void Dispatcher::dispatchAllCollisionPairs(btOverlappingPairCache* cache, const 
     if (i + kHandles < count) ask_for_handles(*awake_[i + kHandles]);
     if (i + kParts < count) ask_for_parts(*awake_[i + kParts], manifolds_);
     if (i + kPoints < count) ask_for_points(*awake_[i + kPoints], manifolds_);
-    getNearCallback()(*awake_[i], *this, info);
+    find_contacts(*awake_[i], info);
   }
 }
 

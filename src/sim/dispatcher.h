@@ -6,6 +6,7 @@
 
 #include "base/prefetch.h"
 #include "sim/bullet.h"
+#include "sim/contact_algorithms.h"
 
 namespace limber {
 
@@ -20,13 +21,13 @@ namespace limber {
   prefetch(&manifold, static_cast<std::size_t>(manifold.getNumContacts()) * sizeof(btManifoldPoint));
 }
 
-/// Bullet's, but that a pair which was made may collide, and that what a pair is about to look at is asked for while
-/// those before it are at work: a pair has two parts, two shapes and a kilobyte of contact points, which a large scene
-/// has thrown out of the caches since the last step. [sim]
+/// Bullet's, with contact algorithms of our own; a pair which was made may collide, and what a pair is about to look at
+/// is asked for while those before it are at work: a pair has two parts, two shapes and a kilobyte of contact points,
+/// which a large scene has thrown out of the caches since the last step. [sim]
 class Dispatcher : public btCollisionDispatcher {
  public:
   BT_DECLARE_ALIGNED_ALLOCATOR();
-  using btCollisionDispatcher::btCollisionDispatcher;
+  explicit Dispatcher(btCollisionConfiguration* configuration);
 
   bool needsCollision(const btCollisionObject*, const btCollisionObject*) override { return true; }
   void dispatchAllCollisionPairs(btOverlappingPairCache* cache, const btDispatcherInfo& info,
@@ -39,7 +40,9 @@ class Dispatcher : public btCollisionDispatcher {
 
  private:
   void find_awake(btBroadphasePairArray& pairs);
+  void find_contacts(btBroadphasePair& pair, const btDispatcherInfo& info);
 
+  ContactAlgorithms algorithms_;
   bool some_sleep_ = false;
   std::uint64_t looked_at_ = 0;
   btAlignedObjectArray<btBroadphasePair*> awake_;  // scratch

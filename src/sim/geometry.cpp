@@ -20,6 +20,7 @@ std::shared_ptr<btCollisionShape> hull_shape(const MeshModel& mesh, const Pose& 
   for (const Vec3& v : mesh.hull) hull->addPoint(to_bt(at * v), false);
   hull->setMargin(kMargin);
   hull->recalcLocalAabb();
+  hull->initializePolyhedralFeatures();  // its faces, for contact manifolds
   return hull;
 }
 

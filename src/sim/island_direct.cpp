@@ -16,6 +16,8 @@ constexpr int kRounds = 8;
 /// on the body does not become less with them.
 constexpr double kMostTurn = 0.5;
 constexpr double kTurnGoal = 0.44;
+/// So often friction outside of its cone is brought back.
+constexpr int kNarrowings = 2;
 /// So often bends are corrected.
 constexpr int kBends = 4;
 /// Fastest bend, m/s: what flies apart is not pulled together in one step.
@@ -314,6 +316,7 @@ bool IslandDirect::settle_all(IslandPools& pools, double h) {
   collect_loops(pools);
   fixed_outer_ = outer_.size();
   bool settled = settle();
+  for (int pass = 0; pass < kNarrowings && settled && narrow_friction(); ++pass) settled = settle();
   for (int pass = 0; pass < 3 && settled && limit_turns(pools, h); ++pass) settled = settle();
   return settled;
 }

@@ -153,6 +153,7 @@ class IslandDirect {
   Spatial moving(int node, const IslandPools& pools, Whips which) const;
   Rigid motion_of(const Tree& tree, const IslandPools& pools, Whips which) const;
   void forget_calm(IslandPools& pools) const;
+  bool narrow_friction();
   bool limit_turns(const IslandPools& pools, double h);
   bool bend_locks(const IslandPools& pools, double h);
   void ask_for_bend(Link& link, double h);

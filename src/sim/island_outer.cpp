@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "sim/contact_friction.h"
 #include "sim/island_direct.h"
 
 namespace limber {
@@ -14,6 +15,9 @@ constexpr double kEnough = 5e4;
 constexpr double kEnoughForBody = 2e3;
 constexpr double kEnoughForContacts = 1;
 constexpr double kEnoughWhileMotorsHold = 4;
+
+/// Friction that exceeds the cone by this is brought back into it.
+constexpr double kOutsideOfCone = 1.02;
 
 Spatial pull_of(const btVector3& linear, const btVector3& angular) { return {from_bt(linear), from_bt(angular)}; }
 
@@ -60,9 +64,7 @@ void IslandDirect::collect_contacts(IslandPools& pools) {
     add_contact(pools.frictions[i], pools.frictions[i].m_frictionIndex, 0);
   }
   for (int i = 0; i < pools.rollings.size(); ++i) {
-    // Bullet's: bounded by its own coefficient too
-    add_contact(pools.rollings[i], pools.rollings[i].m_frictionIndex,
-                static_cast<double>(pools.rollings[i].m_friction));
+    add_contact(pools.rollings[i], pools.rollings[i].m_frictionIndex, 0);
   }
 }
 
@@ -140,6 +142,27 @@ int IslandDirect::take_contacts() {
     taken += row.aside ? 0 : 1;
   }
   return taken;
+}
+
+// Rows of friction are bounded one by one, by a square that has the cone's strength along its axes only. Where both
+// together are stronger than the cone, their bounds become those of the rectangle within it whose corner has the
+// direction of the force that was found. True when something changed.
+bool IslandDirect::narrow_friction() {
+  bool changed = false;
+  for (std::size_t i = 0; i + 1 < fixed_outer_; ++i) {
+    OuterRow& first = outer_[i];
+    OuterRow& second = outer_[i + 1];
+    if (first.contact == nullptr || first.normal < 0) continue;
+    if (first.contact->m_overrideNumSolverIterations != kFrictionAlong) continue;
+    const double most = static_cast<double>(first.contact->m_friction) * outer_[at(first.normal)].impulse;
+    const double force = std::hypot(first.impulse, second.impulse);
+    if (!(force > kOutsideOfCone * most)) continue;
+    for (OuterRow* row : {&first, &second}) {
+      row->friction = static_cast<double>(row->contact->m_friction) * std::fabs(row->impulse) / force;
+    }
+    changed = true;
+  }
+  return changed;
 }
 
 // Contacts of a body whose every motion motors prescribe: no impulse answers, motors must.

@@ -5,18 +5,9 @@
 #include <cstring>
 #include <utility>
 
-#include "base/prefetch.h"
-#include "sim/dispatcher.h"
 #include "sim/gyroscope.h"
 
 namespace limber {
-namespace {
-
-/// So many manifolds ahead their ends are asked for, and then what those tell of.
-constexpr int kEndsAhead = 12;
-constexpr int kPointsAhead = 6;
-
-}  // namespace
 
 void IslandSolver::convertBodies(btCollisionObject** bodies, int count, const btContactSolverInfo& info) {
   btSequentialImpulseConstraintSolver::convertBodies(bodies, count, info);
@@ -30,19 +21,6 @@ void IslandSolver::convertBodies(btCollisionObject** bodies, int count, const bt
                                           static_cast<double>(info.m_timeStep));
     btSolverBody& solver = m_tmpSolverBodyPool[body->getCompanionId()];
     solver.m_externalTorqueImpulse += axes * to_bt(change) * body->getAngularFactor();
-  }
-}
-
-void IslandSolver::convertContacts(btPersistentManifold** manifolds, int count, const btContactSolverInfo& info) {
-  for (int i = 0; i < count; ++i) {
-    if (i + kEndsAhead < count) prefetch_end(*manifolds[i + kEndsAhead]);
-    if (i + kPointsAhead < count) {
-      const btPersistentManifold& next = *manifolds[i + kPointsAhead];
-      prefetch_points(next);
-      prefetch(next.getBody0(), sizeof(btRigidBody));
-      prefetch(next.getBody1(), sizeof(btRigidBody));
-    }
-    convertContact(manifolds[i], info);
   }
 }
 
@@ -236,22 +214,6 @@ btScalar IslandSolver::sweep_joints() {
   return largest;
 }
 
-// Rows against rolling, as Bullet sweeps them.
-btScalar IslandSolver::sweep_rolling() {
-  btScalar largest = 0;
-  for (int i = 0; i < m_tmpSolverContactRollingFrictionConstraintPool.size(); ++i) {
-    btSolverConstraint& row = m_tmpSolverContactRollingFrictionConstraintPool[i];
-    const btScalar pressing = contacts_.impulse(row.m_frictionIndex);
-    if (!(pressing > 0)) continue;
-    row.m_upperLimit = std::min(row.m_friction * pressing, row.m_friction);
-    row.m_lowerLimit = -row.m_upperLimit;
-    const btScalar change = resolveSingleConstraintRowGeneric(m_tmpSolverBodyPool[row.m_solverBodyIdA],
-                                                              m_tmpSolverBodyPool[row.m_solverBodyIdB], row);
-    largest = std::max(largest, change * change);
-  }
-  return largest;
-}
-
 btScalar IslandSolver::solveSingleIteration(int iteration, btCollisionObject**, int, btPersistentManifold**, int,
                                             btTypedConstraint**, int, const btContactSolverInfo& info, btIDebugDraw*) {
   const btScalar joints = sweep_joints();
@@ -261,6 +223,7 @@ btScalar IslandSolver::solveSingleIteration(int iteration, btCollisionObject**, 
 
 btScalar IslandSolver::solveGroupCacheFriendlyFinish(btCollisionObject** bodies, int body_count,
                                                      const btContactSolverInfo& info) {
+  remember_rolling_friction();
   for (int i = 0; i < joints_.size(); ++i) joints_[i].block.finish();
   const int count = m_tmpSolverNonContactConstraintPool.size();
   for (int first = 0, last = 0; first < count; first = last) {

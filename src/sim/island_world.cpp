@@ -227,7 +227,7 @@ void IslandWorld::updateAabbs() {
   left_.resizeNoInitialize(count);
   for_each(looked_, [&](int i, btCollisionObject& object) {
     if (i + kAhead / 2 < count) Broadphase::fetch(*looked_[i + kAhead / 2]);
-    left_[i] = Broadphase::look(object) ? object.getBroadphaseHandle() : nullptr;
+    left_[i] = Broadphase::look(object, getDispatchInfo().m_timeStep) ? object.getBroadphaseHandle() : nullptr;
   });
   int left = 0;
   for (int i = 0; i < count; ++i) {

@@ -69,7 +69,10 @@ class IslandSolver : public btSequentialImpulseConstraintSolver {
   void convert_rows(JointConstraint& joint, btSolverConstraint* rows, int count, const btContactSolverInfo& info);
   JointBlock& add_rows(const btSolverConstraint* rows, int count, bool bounded, int locked);
   btScalar sweep_joints();
+  void convert_contact(btPersistentManifold& manifold, const btContactSolverInfo& info);
+  void convert_rolling(btManifoldPoint& point, int contact, int id_a, int id_b, btScalar pressing);
   btScalar sweep_rolling();
+  void remember_rolling_friction();
 
   struct JointRows {  // of one joint: `scalar` rows from `first` on, then those of the block
     int first;

@@ -7,6 +7,7 @@
 
 #include "base/prefetch.h"
 #include "sim/body.h"
+#include "sim/contact_friction.h"
 #include "sim/world.h"
 
 namespace limber {
@@ -45,6 +46,14 @@ const Table& Part::table() {
               number("friction", "", 0.5, 0, 100, "Coulomb friction; the values of two touching parts multiply.")),
           effect<&Part::effect_surface>(number("rolling_friction", "m", 0, 0, 100,
                                                "Resistance to rolling; the values of two touching parts are mixed.")),
+          effect<&Part::effect_surface>(number("spinning_friction", "m", 0, 0, 100,
+                                               "Resistance to spinning about the contact's normal; mixed like rolling "
+                                               "friction.")),
+          effect<&Part::effect_surface>(
+              vec3("friction_direction", "", {0, 0, 0}, -1, 1,
+                   "Direction, link frame, in which friction is scaled by friction_factor; zeros: in none.")),
+          effect<&Part::effect_surface>(number("friction_factor", "", 1, 0, 100,
+                                               "Friction along friction_direction as a multiple of that across it.")),
           effect<&Part::effect_surface>(number("restitution", "", 0, 0, 1,
                                                "What a bounce gives back; the values of two touching parts multiply.")),
           effect<&Part::effect_collision>(
@@ -281,6 +290,9 @@ void Part::effect_damping() {
 void Part::effect_surface() {
   static const Row& friction = table().at("friction");
   static const Row& rolling = table().at("rolling_friction");
+  static const Row& spinning = table().at("spinning_friction");
+  static const Row& direction = table().at("friction_direction");
+  static const Row& factor = table().at("friction_factor");
   static const Row& bounce = table().at("restitution");
   const Store& store = body_.store();
   const auto surface = [this] {
@@ -289,6 +301,10 @@ void Part::effect_surface() {
   const std::array<btScalar, 3> before = surface();
   rigid_->setFriction(static_cast<btScalar>(store.values(id_, friction)[0]));
   rigid_->setRollingFriction(static_cast<btScalar>(store.values(id_, rolling)[0]));
+  rigid_->setSpinningFriction(static_cast<btScalar>(store.values(id_, spinning)[0]));
+  const Vec3 in_link = vec3_at(store.values(id_, direction));
+  set_friction_direction(*rigid_, to_bt(glm::inverse(geometry_->frame.rotation) * in_link),
+                         static_cast<btScalar>(store.values(id_, factor)[0]));
   const auto restitution = static_cast<btScalar>(store.values(id_, bounce)[0]);
   rigid_->setRestitution(restitution);
   if (surface() != before) wake();

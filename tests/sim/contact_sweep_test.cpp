@@ -1,6 +1,8 @@
-// ContactSweep beside Bullet's own sweeps, over rows drawn at random: the same to the bit.
+// ContactSweep beside Bullet's own sweeps, over rows drawn at random: the same to the bit along normals; friction
+// within the disc, opposite to the slip.
 #include "sim/contact_sweep.h"
 
+#include <cmath>
 #include <cstring>
 #include <random>
 
@@ -15,7 +17,7 @@ constexpr int kPairs = 40;
 // Bullet's solver with rows of our choice in its pools.
 class Bullet : public btSequentialImpulseConstraintSolver {
  public:
-  explicit Bullet(unsigned seed) : generator_(seed) {
+  explicit Bullet(unsigned seed, float coefficient = 0) : generator_(seed), coefficient_(coefficient) {
     info_.m_numIterations = 1;
     info_.m_splitImpulse = 1;
     info_.m_solverMode = SOLVER_USE_WARMSTARTING | SOLVER_SIMD | SOLVER_USE_2_FRICTION_DIRECTIONS;
@@ -90,7 +92,8 @@ class Bullet : public btSequentialImpulseConstraintSolver {
     if (generator_() % 3 != 0) c.m_rhsPenetration = draw(0, 1);
     for (int i = 0; i < 2; ++i) {
       btSolverConstraint f = row(a, b);
-      f.m_friction = draw(0, 1);
+      f.m_friction = coefficient_;
+      f.m_appliedImpulse = 0;
       f.m_frictionIndex = contacts().size();
       friction().push_back(f);
     }
@@ -98,6 +101,7 @@ class Bullet : public btSequentialImpulseConstraintSolver {
   }
 
   std::mt19937 generator_;
+  float coefficient_;
   btContactSolverInfo info_;
   btRigidBody part_{btRigidBody::btRigidBodyConstructionInfo(1, nullptr, nullptr)};
 };
@@ -136,6 +140,64 @@ TEST(ContactSweep, ComesToBulletsImpulsesToTheBit) {
     }
     contacts.finish();
     expect_same(ours, theirs);
+  }
+}
+
+TEST(ContactSweep, FrictionStaysWithinTheDisc) {
+  for (unsigned seed = 1; seed <= 20; ++seed) {
+    Bullet rows(seed, 0.4F);
+    ContactSweep contacts;
+    contacts.begin(rows.bodies(), rows.contacts(), rows.friction());
+    for (int i = 0; i < 5; ++i) contacts.sweep();
+    contacts.finish();
+    int slide = 0;
+    for (int i = 0; i < rows.contacts().size(); ++i) {
+      const float pressing = rows.contacts()[i].m_appliedImpulse;
+      if (!(pressing > 0)) continue;
+      const float force =
+          std::hypot(rows.friction()[2 * i].m_appliedImpulse, rows.friction()[2 * i + 1].m_appliedImpulse);
+      EXPECT_LE(force, 0.4F * pressing * 1.0001F);
+      if (force > 0.4F * pressing * 0.9999F) ++slide;
+    }
+    EXPECT_GT(slide, 5);
+  }
+}
+
+// A ball that presses with 6 N·s on the floor and slides at 3 m/s: friction is opposite to the slip, also where the two
+// rows have responses of their own (it turns about one axis more easily).
+TEST(ContactSweep, FrictionIsOppositeToTheSlip) {
+  btRigidBody ball(btRigidBody::btRigidBodyConstructionInfo(2, nullptr, nullptr));
+  for (const double heading : {0.0, 0.4, 0.8, 1.2, 2.0}) {
+    btAlignedObjectArray<btSolverBody> bodies;
+    btConstraintArray contacts;
+    btConstraintArray friction;
+    for (int i = 0; i < 2; ++i) std::memset(static_cast<void*>(&bodies.expand()), 0, sizeof(btSolverBody));
+    bodies[1].m_originalBody = &ball;
+    bodies[1].m_invMass = btVector3(0.5F, 0.5F, 0.5F);
+    const btVector3 v(static_cast<float>(3 * std::cos(heading)), static_cast<float>(3 * std::sin(heading)), -3);
+    for (const btVector3& along : {btVector3(0, 0, 1), btVector3(1, 0, 0), btVector3(0, 1, 0)}) {
+      btSolverConstraint row;
+      std::memset(static_cast<void*>(&row), 0, sizeof row);
+      row.m_solverBodyIdB = 1;
+      row.m_contactNormal2 = along;
+      const bool turns = along.x() > 0;
+      row.m_relpos2CrossNormal = btVector3(0, turns ? 1 : 0, 0);
+      row.m_angularComponentB = btVector3(0, turns ? 1 : 0, 0);
+      row.m_jacDiagABInv = turns ? 1 / 1.5F : 2;
+      row.m_rhs = -v.dot(along) * row.m_jacDiagABInv;
+      row.m_friction = 0.1F;
+      (along.z() > 0 ? contacts : friction).push_back(row);
+    }
+    ContactSweep sweep;
+    sweep.begin(bodies, contacts, friction);
+    for (int i = 0; i < 60; ++i) sweep.sweep();
+    sweep.finish();
+    const btVector3 after = v + bodies[1].m_deltaLinearVelocity + btVector3(bodies[1].m_deltaAngularVelocity.y(), 0, 0);
+    const float force_x = friction[0].m_appliedImpulse;
+    const float force_y = friction[1].m_appliedImpulse;
+    EXPECT_NEAR(std::hypot(force_x, force_y), 0.1F * contacts[0].m_appliedImpulse, 1e-5);
+    EXPECT_NEAR(force_x * after.y() - force_y * after.x(), 0, 1e-4) << heading;
+    EXPECT_LT(force_x * after.x() + force_y * after.y(), 0) << heading;
   }
 }
 

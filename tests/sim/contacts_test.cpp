@@ -46,6 +46,28 @@ TEST(Contacts, AnImpulseIsTheChangeOfMomentum) {
   }
 }
 
+// Whatever the distance at which the step of the impact begins: all of m·v, over all points, and nothing of the weight
+// that they carry afterwards.
+TEST(Contacts, AFlatBoxReportsItsWholeMomentum) {
+  for (const double height : {0.98, 0.99, 1.0, 1.01, 1.02, 1.03}) {
+    for (const bool plane : {true, false}) {
+      Touches s;
+      s.gravity({0, 0, -9.81});
+      if (plane) {
+        s.floor();
+      } else {
+        s.lone(box_model({4, 4, 1}), 0, {{0, 0, -0.5}, quat_identity()});
+      }
+      Part& box = s.reporting(s.lone(box_model({0.2, 0.2, 0.2}), 3, {{0, 0, height + 0.1}, quat_identity()}));
+      const std::vector<ContactEvent> events = s.events(60);
+      ASSERT_EQ(events.size(), 1u) << height << plane;
+      EXPECT_EQ(events[0].part, box.id());
+      const double momentum = 3 * std::sqrt(2 * 9.81 * height);
+      EXPECT_NEAR(events[0].impulse, momentum, 0.03 * momentum) << height << plane;
+    }
+  }
+}
+
 TEST(Contacts, BothReportWhenBothAsk) {
   Touches s;
   Part& a = s.reporting(s.lone(sphere_model(0.1), 1));

@@ -219,7 +219,6 @@ TEST(Health, AnArmThatBeginsInsideAWallIsNotTornByEitherSolver) {
     for (const double x : {0.0, 0.04, 0.08, 0.13}) walls.push_back({side, x});
   }
   for (const double solver : {0.0, 1.0}) {
-    double by_sweeps = 0;
     int torn = 0;
     for (const Wall wall : walls) {
       Stage s;
@@ -234,12 +233,8 @@ TEST(Health, AnArmThatBeginsInsideAWallIsNotTornByEitherSolver) {
       }
       EXPECT_TRUE(all_finite(s));
       torn += s.world.health_events() > 0 ? 1 : 0;
-      by_sweeps += s.number(s.world.id(), "solver_fallbacks");
     }
     EXPECT_LE(torn, solver > 0 ? 10 : 0) << "of " << walls.size();
-    if (solver > 0) {
-      EXPECT_GT(by_sweeps, 10);
-    }
   }
 }
 

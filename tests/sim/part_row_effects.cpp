@@ -85,6 +85,49 @@ void rolling_friction() {
   }
 }
 
+// A ball that spins on its spot: torque mu·m·g against I = 2/5·m·r².
+void spinning_friction() {
+  const double r = 0.2;
+  for (const double mu : {0.0, 0.005, 0.01}) {
+    Stage s;
+    s.floor();
+    s.gravity({0, 0, -kG});
+    Part& ball = s.lone(sphere_model(r), 1, {{0, 0, r}, quat_identity()});
+    s.set(ball.id(), "friction", {1});
+    s.set(ball.id(), "spinning_friction", {mu});
+    s.set(ball.id(), "angular_velocity", {0, 0, 20});
+    s.ticks(60);
+    EXPECT_NEAR(ball.angular_velocity().z, 20 - mu * kG / (0.4 * r * r), 0.1) << mu;
+  }
+}
+
+// Friction of a box that slides along x, with friction scaled by the factor in that direction.
+double speed_lost(const Vec3& direction, double factor) {
+  Stage s;
+  s.floor();
+  s.gravity({0, 0, -kG});
+  Part& box = s.lone(box_model({0.4, 0.4, 0.1}), 1, {{0, 0, 0.05}, quat_identity()});
+  s.set(box.id(), "friction", {0.4});
+  s.set(box.id(), "friction_direction", {direction.x, direction.y, direction.z});
+  s.set(box.id(), "friction_factor", {factor});
+  s.set(box.id(), "linear_velocity", {6, 0, 0});
+  s.ticks(30);
+  return 6 - box.linear_velocity().x;
+}
+
+void friction_direction() {
+  EXPECT_NEAR(speed_lost({0, 0, 0}, 0.25), 0.2 * kG, 0.02);
+  EXPECT_NEAR(speed_lost({1, 0, 0}, 0.25), 0.05 * kG, 0.02);
+  EXPECT_NEAR(speed_lost({0, 1, 0}, 0.25), 0.2 * kG, 0.02);
+  EXPECT_NEAR(speed_lost({0, 0, 1}, 0.25), 0.2 * kG, 0.02);
+}
+
+void friction_factor() {
+  for (const double factor : {0.0, 0.5, 1.0, 2.0}) {
+    EXPECT_NEAR(speed_lost({0.5, 0, 0}, factor), 0.2 * factor * kG, 0.02) << factor;
+  }
+}
+
 double height_after_bounce(double restitution, double drop) {
   Stage s;
   s.floor();
@@ -230,6 +273,9 @@ void add_part_effects(RowEffects& effects) {
   effects[{"Part", "angular_damping"}] = angular_damping;
   effects[{"Part", "friction"}] = friction;
   effects[{"Part", "rolling_friction"}] = rolling_friction;
+  effects[{"Part", "spinning_friction"}] = spinning_friction;
+  effects[{"Part", "friction_direction"}] = friction_direction;
+  effects[{"Part", "friction_factor"}] = friction_factor;
   effects[{"Part", "restitution"}] = restitution;
   effects[{"Part", "self_collision"}] = part_self_collision;
   effects[{"Part", "collision_group"}] = collision_group;
