@@ -484,6 +484,7 @@ function shape_:add_child(child, position, rotation) end
 ---@class sim
 ---@field alive boolean # read-only. Always true.
 ---@field bodies body_list # read-only. In stream order; called, it walks those that a pattern matches.
+---@field collision_groups string[] # Names of the 16 collision groups, in order of their bits; set at the top level.
 ---@field gravity vec3like # m/s², -10000 .. 10000, default 0 0 -9.81. Acceleration of everything that moves.
 ---@field timestep number # s, 1e-05 .. 1, default 0.0166667. What a tick advances the time by.
 ---@field substeps integer # 1 .. 1000, default 4. Equal internal steps that a tick is made of.
@@ -499,6 +500,8 @@ function shape_:add_child(child, position, rotation) end
 ---@field panicked boolean # read-only. A panic holds: everything comes to rest.
 ---@field solver_fallbacks integer # read-only. Steps of islands that the direct solver left to the iterative one, since the start.
 ---@field sleeping_parts integer # read-only. Parts that are asleep, at rest.
+---@field islands_direct integer # read-only. Steps of islands (parts that joints or contacts connect) that the direct solver solved, since the start.
+---@field islands_iterative integer # read-only. Steps of islands that the iterative solver solved, by rule or as a fallback, since the start.
 sim = {}
 
 ---A body from a URDF file.

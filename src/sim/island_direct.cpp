@@ -339,7 +339,8 @@ bool IslandDirect::bend_all(const IslandPools& pools, double h) {
 }
 
 bool IslandDirect::solve(IslandPools pools, const btContactSolverInfo& info) {
-  if (pools.contacts.size() + pools.frictions.size() + pools.rollings.size() > kMostContactRows) {
+  const int most = links_.empty() ? kMostRowsWithoutJoints : kMostContactRows;
+  if (pools.contacts.size() + pools.frictions.size() + pools.rollings.size() > most) {
     counts_.plain++;
     return false;
   }
@@ -358,7 +359,7 @@ bool IslandDirect::solve(IslandPools pools, const btContactSolverInfo& info) {
     solved = build_forest(pools) && settle_all(pools, h);
   }
   if (solved) solved = bend_all(pools, h);
-  if (!solved || contradicts(system_, static_cast<int>(body_of_.size()), pools)) {
+  if (!solved || (!links_.empty() && contradicts(system_, static_cast<int>(body_of_.size()), pools))) {
     counts_.fallbacks++;
     forget_calm(pools);
     start_contacts_anew(pools);

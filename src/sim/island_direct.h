@@ -1,4 +1,4 @@
-// IslandDirect: one island's joints solved exactly, as trees; contacts and joints that close loops around them, with
+// IslandDirect: one island solved exactly: its joints as trees, contacts and joints that close loops around them, with
 // the trees' response. docs/solver.md.
 #pragma once
 
@@ -24,10 +24,11 @@ struct IslandPools {
   btConstraintArray& rollings;
 };
 
-/// Steps of islands with joints, by who solved them.
+/// Steps of islands that have joints or contacts, by the solver that solved them.
 struct DirectCounts {
+  std::uint64_t islands = 0;  ///< All of them; what is not `direct` is left to the iterative solver.
   std::uint64_t direct = 0;
-  std::uint64_t plain = 0;      ///< By rule: too many contacts, or a crowd of small trees.
+  std::uint64_t plain = 0;      ///< Left by rule: too many contacts, or a crowd of small trees.
   std::uint64_t fallbacks = 0;  ///< Not solved to the end.
 };
 
@@ -50,6 +51,8 @@ class IslandDirect {
   bool solve(IslandPools pools, const btContactSolverInfo& info);
 
   const DirectCounts& counts() const { return counts_; }
+  /// Islands that have joints or contacts and are about to be solved, by this or by the iterative solver.
+  void count_islands(int islands) { counts_.islands += static_cast<std::uint64_t>(islands); }
   /// Measured after each solve while asked for: it costs as much again.
   void measure(bool on) { measured_ = on; }
   const DirectResiduals& residuals() const { return residuals_; }
@@ -105,6 +108,7 @@ class IslandDirect {
     double friction = 0;
     double most = 0;
     bool loop = false;
+    bool softened = false;                         // its softness counts what joints hold
     bool aside = false;                            // a contact that would not touch: its rows are not solved for
     BoxSolver::Status guess = BoxSolver::unknown;  // where it stood in the round before
     double likely = 0;                             // its impulse then
@@ -133,6 +137,7 @@ class IslandDirect {
   void gather_rows();
   int name_of(int outer) const;
   void respond(BoxSolver& box, std::span<const int> rows);
+  void soften(BoxSolver& box, int i);
   bool build_responses();
   bool extend_responses();
   int released_with(const OuterRow& row) const;
@@ -177,10 +182,10 @@ class IslandDirect {
 
   /// A body that is faster than this in a step, rad, Bullet turns by less than that speed (ANGULAR_MOTION_THRESHOLD).
   static constexpr double kBulletsTurn = kPi / 4;
-  /// A push that turns a body by more than this, rad, makes its joints gape.
-  static constexpr double kFarthestPush = 0.1;
   /// More contact and friction rows than this go to the plain solver: the dense response would cost more than it gains.
   static constexpr int kMostContactRows = 360;
+  /// The same for an island without joints, where the iterative solver is cheaper and does nearly as well.
+  static constexpr int kMostRowsWithoutJoints = 60;
   /// What outer rows may miss, m/s and rad/s, when they count as solved; and when they still will do.
   static constexpr double kOuterTolerance = 1e-6;
   static constexpr double kOuterMiss = 1e-2;

@@ -15,6 +15,27 @@ constexpr double kEnough = 5e4;
 constexpr double kEnoughForBody = 2e3;
 constexpr double kEnoughForContacts = 1;
 constexpr double kEnoughWhileMotorsHold = 4;
+/// Least softness of a contact's or loop's row, as part of the response of its two bodies alone. Where servos or locks
+/// hold the two against each other, or a loop repeats what another joint locks, the trees respond by rounding errors
+/// only, and without it an impulse would be a multiple of them.
+constexpr double kLeastSoftness = 1e-6;
+/// The same where penetration is repaired: what the joints let move less than this part of what the bodies alone would
+/// is left where it is.
+constexpr double kLeastPushSoftness = 1e-3;
+/// Fastest repair of penetration, m/s.
+constexpr double kFastestPush = 2;
+/// Furthest turn of a body by one repair, rad; the whole repair of a step is reduced until no body turns further: its
+/// velocity stays while it is turned, so its energy changes.
+constexpr double kFurthestPushTurn = 0.05;
+
+// Rate per impulse of one body alone.
+double ease_alone(const btSolverBody& body, const Spatial& pull) {
+  const btRigidBody* rigid = body.m_originalBody;
+  if (rigid == nullptr) return 0;
+  const btVector3 turn = to_bt(pull.angular);
+  return glm::dot(pull.linear, pull.linear) * static_cast<double>(rigid->getInvMass()) +
+         static_cast<double>(turn.dot(rigid->getInvInertiaTensorWorld() * turn));
+}
 
 /// Friction that exceeds the cone by this is brought back into it.
 constexpr double kOutsideOfCone = 1.02;
@@ -45,7 +66,7 @@ void IslandDirect::add_contact(btSolverConstraint& row, int normal, double most)
   out.contact = &row;
   out.eases = step > 0 ? 1 / step : 0;
   out.target = step > 0 ? static_cast<double>(row.m_rhs) / step : 0;
-  out.softness = step > 0 ? static_cast<double>(row.m_cfm) / step : 0;
+  out.softness = step > 0 ? static_cast<double>(row.m_cfm) / step + kLeastSoftness * out.eases : 0;
   out.impulse = out.likely = static_cast<double>(row.m_appliedImpulse);
   out.lower = static_cast<double>(row.m_lowerLimit);
   out.upper = static_cast<double>(row.m_upperLimit);
@@ -80,7 +101,8 @@ void IslandDirect::collect_loops(const IslandPools& pools) {
       out.b = {node_of_[at(link.body_b)], pull_of(j.linear, j.angular_b)};
       out.target = static_cast<double>(row.velocity) - dot(out.a.pull, velocity(link.body_a, pools)) -
                    dot(out.b.pull, velocity(link.body_b, pools));
-      out.softness = static_cast<double>(row.softness);
+      out.eases = ease_alone(pools.bodies[link.body_a], out.a.pull) + ease_alone(pools.bodies[link.body_b], out.b.pull);
+      out.softness = static_cast<double>(row.softness) + kLeastSoftness * out.eases;
       out.lower = static_cast<double>(row.lower);
       out.upper = static_cast<double>(row.upper);
       outer_.push_back(out);
@@ -231,7 +253,7 @@ void IslandDirect::push_apart(IslandPools& pools, const btContactSolverInfo& inf
   const auto pushes = [](const OuterRow& row) { return row.contact != nullptr && row.normal < 0; };
   const auto wants = [](const OuterRow& row) {
     const double step = static_cast<double>(row.contact->m_jacDiagABInv);
-    return step > 0 ? static_cast<double>(row.contact->m_rhsPenetration) / step : 0;
+    return step > 0 ? std::min(static_cast<double>(row.contact->m_rhsPenetration) / step, kFastestPush) : 0;
   };
   if (std::none_of(outer_.begin(), outer_.end(), [&](const OuterRow& r) { return pushes(r) && wants(r) > 0; })) return;
   for (OuterRow& row : outer_) row.begun = 0;
@@ -248,7 +270,7 @@ void IslandDirect::push_apart(IslandPools& pools, const btContactSolverInfo& inf
     box.left = row.loop ? 0 : wants(row);
     box.lower = row.loop ? row.lower : 0;
     box.upper = row.upper;
-    push_box_.response(i, i) += row.softness;
+    push_box_.response(i, i) += row.softness + kLeastPushSoftness * row.eases;
   }
   push_box_.solve(kOuterTolerance);
   for (int i = 0; i < system_.trees.size(); ++i) {
@@ -256,13 +278,17 @@ void IslandDirect::push_apart(IslandPools& pools, const btContactSolverInfo& inf
     system_.trees.node(i).load = {};
   }
   for (int i = 0; i < count; ++i) load(outer_[at(push_rows_[at(i)])], push_box_.row(i).impulse);
-  const double turn = static_cast<double>(info.m_splitImpulseTurnErp);  // Bullet will multiply with it
   for (const Tree& t : trees_) system_.trees.respond(t.first, t.last);
+  double furthest = kFurthestPushTurn / static_cast<double>(info.m_timeStep);
+  const double most = furthest;
+  for (int i = 0; i < system_.trees.size(); ++i) {
+    furthest = std::max(furthest, glm::length(system_.trees.node(i).change.angular));
+  }
+  const double turn = static_cast<double>(info.m_splitImpulseTurnErp);  // Bullet will multiply with it
   for (std::size_t i = 0; i < body_of_.size(); ++i) {
-    const Spatial& change = system_.trees.node(static_cast<int>(i)).change;
+    const Spatial change = system_.trees.node(static_cast<int>(i)).change * (most / furthest);
     pools.bodies[body_of_[i]].m_pushVelocity = to_bt(change.linear);
     pools.bodies[body_of_[i]].m_turnVelocity = to_bt(change.angular / turn);
-    gapes_ = gapes_ || glm::length(change.angular) * static_cast<double>(info.m_timeStep) > kFarthestPush;
   }
 }
 

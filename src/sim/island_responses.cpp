@@ -11,6 +11,8 @@ namespace {
 
 /// What a free axis costs on the way of an impulse to the root, in numbers.
 constexpr double kAxisNumbers = 24;
+/// Softness of a contact that joints hold still, as part of the response of its two bodies alone.
+constexpr double kHeldSoftness = 1e-3;
 /// For so many rows that were known one new column is worth it.
 constexpr int kRowsForColumn = 6;
 /// An axis that, with those before it held still, keeps less than this part of its rate is left to the whole way.
@@ -40,6 +42,19 @@ void IslandDirect::feel(const OuterRow& row, std::array<Reach, 2>& reaches) {
   if (ask != nullptr) *ask = 0;
   reaches[1] = open(tree_b == tree_a ? -1 : tree_b, tree_b == tree_a ? 0 : axes(row.b));
   if (tree_b != tree_a) take(reaches[1], b, {});
+}
+
+// Adds a row's softness to its response. A contact that joints let respond less than its bodies alone would is made
+// softer, once for the step: what joints hold against each other gives way before it throws the rest of the tree.
+void IslandDirect::soften(BoxSolver& box, int i) {
+  OuterRow& row = outer_[at(boxed_[at(i)])];
+  double& response = box.response(i, i);
+  if (row.contact != nullptr && !row.softened && row.eases > 0) {
+    const double held = std::max(0.0, 1 - response / row.eases);
+    row.softness += kHeldSoftness * row.eases * held * held;
+    row.softened = true;
+  }
+  response += row.softness;
 }
 
 // The trees' response between these outer rows.
@@ -92,7 +107,7 @@ bool IslandDirect::build_responses() {
   if (box_factors_ == system_.factors() && names_ == known_names_) return true;
   if (!extend_responses()) {
     respond(box_, boxed_);
-    for (int i = 0; i < box_.size(); ++i) box_.response(i, i) += outer_[at(boxed_[at(i)])].softness;
+    for (int i = 0; i < box_.size(); ++i) soften(box_, i);
   }
   box_factors_ = system_.factors();
   known_names_ = names_;
@@ -159,7 +174,7 @@ bool IslandDirect::extend_responses() {
     const int known_as = released_with(row);
     if (known_as == freed) answer(pull_on(row), answers(freed), {});
     for (int k = 0; k < count; ++k) box_.response(i, k) = box_.response(k, i) = answers(known_as)[at(k)];
-    box_.response(i, i) += row.softness;
+    soften(box_, i);
   }
   effort_.lines((freed + count - known) * (system_.trees.size() + count), kAxisNumbers);
   effort_.lines(count * (1 + freed), count);

@@ -51,7 +51,7 @@ void IslandSolver::convertJoints(btTypedConstraint** constraints, int count, con
   convert_all(constraints, count, info);
 }
 
-// False: no joints, or some of Bullet's own, which only the sweeps know.
+// False: nothing to solve directly, or joints of Bullet's own, which only the sweeps know.
 bool IslandSolver::plan_direct(btTypedConstraint** constraints, int count, const btContactSolverInfo& info) {
   for (int i = 0; i < count; ++i) {
     if (constraints[i]->getConstraintType() != JointConstraint::kType) return false;
@@ -64,7 +64,7 @@ bool IslandSolver::plan_direct(btTypedConstraint** constraints, int count, const
     direct_.add_joint(joint, getOrInitSolverBody(joint.getRigidBodyA(), info.m_timeStep),
                       getOrInitSolverBody(joint.getRigidBodyB(), info.m_timeStep));
   }
-  return direct_.joint_count() > 0;
+  return direct_.joint_count() > 0 || contacts_direct_;
 }
 
 btScalar IslandSolver::solveGroupCacheFriendlyIterations(btCollisionObject** bodies, int body_count,

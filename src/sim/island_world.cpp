@@ -385,8 +385,8 @@ void IslandWorld::gather_batches(int least) {
     const int joints = joint_start_[last] - joint_start_[first];
     const int contacts = contact_start_[last] - contact_start_[first];
     // the direct solver counts and falls back island by island
-    const bool joints_follow = last < island_count_ && joint_start_[last + 1] > joint_start_[last];
-    const bool alone = solvers.front()->direct_wanted() && (joints > 0 || joints_follow);
+    const bool alone =
+        solvers.front()->direct_wanted() && (joints + contacts > 0 || (last < island_count_ && has_work(last)));
     const int bodies = body_start_[last] - body_start_[first];
     if (alone || joints + contacts >= least || bodies >= kBodies || last == island_count_) batches_.push_back(last);
   }
@@ -399,6 +399,10 @@ void IslandWorld::solve_batch(int batch, IslandSolver& solver, const btContactSo
   const int last = batches_[batch + 1];
   const auto count = [&](const btAlignedObjectArray<int>& start) { return start[last] - start[first]; };
   load_bodies(first, last, info.m_timeStep);
+  for (int island = first; island < last; ++island) {
+    if (has_work(island)) solver.direct().count_islands(1);
+  }
+  solver.set_contacts_direct(last - first == 1 && count(joint_start_) == 0 && count(contact_start_) > 0);
   solver.solveGroup(range(bodies_, body_start_[first]), count(body_start_), range(contacts_, contact_start_[first]),
                     count(contact_start_), range(joints_, joint_start_[first]), count(joint_start_), info, nullptr,
                     getDispatcher());
@@ -452,6 +456,7 @@ DirectCounts IslandWorld::direct_counts() const {
   DirectCounts sum;
   for (const auto& solver : solvers) {
     const DirectCounts& counts = solver->direct().counts();
+    sum.islands += counts.islands;
     sum.direct += counts.direct;
     sum.plain += counts.plain;
     sum.fallbacks += counts.fallbacks;

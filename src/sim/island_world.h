@@ -40,6 +40,8 @@ class IslandSolver : public btSequentialImpulseConstraintSolver {
     steps_left_ = left;
     step_count_ = count;
   }
+  /// Of the islands that come next: whether one without joints goes to the direct solver, too.
+  void set_contacts_direct(bool on) { contacts_direct_ = on; }
   IslandDirect& direct() { return direct_; }
   const IslandDirect& direct() const { return direct_; }
 
@@ -89,6 +91,7 @@ class IslandSolver : public btSequentialImpulseConstraintSolver {
   int steps_left_ = 1;
   int step_count_ = 1;
   bool direct_wanted_ = false;
+  bool contacts_direct_ = false;
   bool direct_here_ = false;  // in the island at hand
 };
 
@@ -185,6 +188,10 @@ class IslandWorld : private WorldParts, public btDiscreteDynamicsWorld {
   void sort_bodies();
   void sort_joints();
   void sort_contacts();
+  /// Whether an island has joints or contacts.
+  bool has_work(int island) const {
+    return joint_start_[island + 1] > joint_start_[island] || contact_start_[island + 1] > contact_start_[island];
+  }
   void gather_batches(int least);
   void solve_islands(const btContactSolverInfo& info);
   void solve_batch(int batch, IslandSolver& solver, const btContactSolverInfo& info);

@@ -14,6 +14,8 @@ constexpr btScalar kAngularMargin = btScalar(0.05);
 constexpr btScalar kLinearMargin = btScalar(0.005);
 /// Fastest repair of a stiff lock's or limit's error, rad/s and m/s: a joint torn apart comes back without a bang.
 constexpr btScalar kFastestRepair = btScalar(20);
+/// The same of a limit, which contacts may have pushed the joint past: it presses against them meanwhile.
+constexpr btScalar kFastestLimitRepair = btScalar(2);
 /// Part of its error that a servo makes good in one step: with a speed limit, and without one.
 constexpr double kServoGain = 0.9;
 constexpr double kEagerServoGain = 0.25;
@@ -192,7 +194,7 @@ void JointConstraint::plan_limit(int axis, bool upper) {
     least *= s.stop_erp;
     // a limit pushes only; but what it pushed to repair itself it takes back, else the repair would throw the axis off
     if (soft == 0) {
-      least = std::min(least, kFastestRepair);
+      least = std::min(least, kFastestLimitRepair);
       pull = repair_impulse_[at(axis)];
       kind = RowKind::repair;
     }

@@ -21,14 +21,24 @@ using namespace rows;
 constexpr int kBodies = 4;
 
 struct WorldRows {
-  const Row *gravity, *timestep, *substeps, *iterations, *seed, *time, *tick, *solver, *fallbacks, *sleeping;
+  const Row *gravity, *timestep, *substeps, *iterations, *seed, *time, *tick, *solver, *fallbacks, *sleeping,
+      *islands_direct, *islands_iterative;
 };
 
 const WorldRows& world_rows() {
   static const auto at = [](const char* name) { return &World::table().at(name); };
-  static const WorldRows found{
-      at("gravity"), at("timestep"), at("substeps"), at("solver_iterations"), at("seed"),
-      at("time"),    at("tick"),     at("solver"),   at("solver_fallbacks"),  at("sleeping_parts")};
+  static const WorldRows found{at("gravity"),
+                               at("timestep"),
+                               at("substeps"),
+                               at("solver_iterations"),
+                               at("seed"),
+                               at("time"),
+                               at("tick"),
+                               at("solver"),
+                               at("solver_fallbacks"),
+                               at("sleeping_parts"),
+                               at("islands_direct"),
+                               at("islands_iterative")};
   return found;
 }
 
@@ -63,6 +73,12 @@ const Table& World::table() {
           live(readout(integer("solver_fallbacks", 0, 0, kUnbounded,
                                "Steps of islands that the direct solver left to the iterative one, since the start."))),
           live(readout(integer("sleeping_parts", 0, 0, kUnbounded, "Parts that are asleep, at rest."))),
+          live(readout(integer("islands_direct", 0, 0, kUnbounded,
+                               "Steps of islands (parts that joints or contacts connect) that the direct solver "
+                               "solved, since the start."))),
+          live(readout(integer("islands_iterative", 0, 0, kUnbounded,
+                               "Steps of islands that the iterative solver solved, by rule or as a fallback, since the "
+                               "start."))),
           act<&World::act_reset>(action("reset", 0, 0, "The scene from its start, with the performer's values.")),
       });
   return table;
@@ -101,7 +117,9 @@ void World::restart_time(std::uint64_t tick, double time) {
   tick_ = tick;
   store_.tell(id_, *world_rows().time)[0] = time;
   store_.tell(id_, *world_rows().tick)[0] = static_cast<double>(tick);
-  store_.tell(id_, *world_rows().fallbacks)[0] = 0;
+  for (const Row* row : {world_rows().fallbacks, world_rows().islands_direct, world_rows().islands_iterative}) {
+    store_.tell(id_, *row)[0] = 0;
+  }
 }
 
 Result<void> World::name_is_free(NodeId group, std::string_view kind, std::string_view name) const {
@@ -228,14 +246,14 @@ void World::step() {
   contacts_.begin_tick();
   const double before = clock_seconds();
   const int substeps = static_cast<int>(store_.values(id_, *world_rows().substeps)[0]);
-  const std::uint64_t fallbacks = bullet_->direct_counts().fallbacks;
+  const DirectCounts solved = bullet_->direct_counts();
   bullet_->step(timestep() / substeps, substeps);
   const double after = clock_seconds();
   contacts_.end_tick();
   tick_++;
   store_.tell(id_, *world_rows().time)[0] += timestep();
   store_.tell(id_, *world_rows().tick)[0] = static_cast<double>(tick_);
-  store_.tell(id_, *world_rows().fallbacks)[0] += static_cast<double>(bullet_->direct_counts().fallbacks - fallbacks);
+  tell_solved(solved);
   store_.tell(id_, *world_rows().sleeping)[0] = bullet_->sleep().sleeping();
   tell_bodies();
   if (std::exchange(healed_, false)) settle_healed();
@@ -245,6 +263,18 @@ void World::step() {
 
 bool World::awake_bodies_known() const {
   return awake_version_ == bullet_->sleep().version() && awake_structure_ == store_.structure_version();
+}
+
+// Adds the islands of this tick to the readouts.
+void World::tell_solved(const DirectCounts& before) {
+  const DirectCounts now = bullet_->direct_counts();
+  const auto add = [&](const Row* row, std::uint64_t count) {
+    store_.tell(id_, *row)[0] += static_cast<double>(count);
+  };
+  const std::uint64_t direct = now.direct - before.direct;
+  add(world_rows().fallbacks, now.fallbacks - before.fallbacks);
+  add(world_rows().islands_direct, direct);
+  add(world_rows().islands_iterative, now.islands - before.islands - direct);
 }
 
 // Bodies that sleep keep what was read of them when they fell asleep.

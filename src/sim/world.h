@@ -139,6 +139,7 @@ class World {
   void effect_solver();
   void effect_panic_motors() { panic_.renew(); }
   void settle_healed();
+  void tell_solved(const DirectCounts& before);
   void tell_bodies();
   void report_overlap(const Body& body, const Part& a, const Part& b, double depth);
   void log_overlaps();
