@@ -68,6 +68,8 @@ void IslandDirect::add_contact(btSolverConstraint& row, int normal, double most)
   out.target = step > 0 ? static_cast<double>(row.m_rhs) / step : 0;
   out.softness = step > 0 ? static_cast<double>(row.m_cfm) / step + kLeastSoftness * out.eases : 0;
   out.impulse = out.likely = static_cast<double>(row.m_appliedImpulse);
+  // a normal's own softness counts from the impulse of the step before, so that what rests does not sink
+  if (normal < 0 && step > 0) out.target += static_cast<double>(row.m_cfm) / step * out.impulse;
   out.lower = static_cast<double>(row.m_lowerLimit);
   out.upper = static_cast<double>(row.m_upperLimit);
   out.normal = normal;

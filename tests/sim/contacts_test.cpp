@@ -91,13 +91,15 @@ TEST(Contacts, ATouchThatLastsBeginsOnce) {
     s.gravity({0, 0, -9.81});
     Part& box = s.reporting(s.lone(box_model({0.4, 0.3, 0.2}), 2, {{0, 0, 0.11}, quat_identity()}));
     s.set(box.id(), "restitution", {restitution});
-    EXPECT_EQ(s.events(300).size(), 1u) << restitution;
+    // met at 0.44 m/s and left at 0.4 of that, it is in the air for 36 ms: more than two ticks, so it touches twice
+    const std::size_t touches = restitution > 0 ? 2 : 1;
+    EXPECT_EQ(s.events(300).size(), touches) << restitution;
     // lifted and dropped: once more
     box.set_pose({{0, 0, 1}, quat_identity()});
     s.ticks(1);
     box.set_velocity(Vec3(0), Vec3(0));
     box.set_pose({{0, 0, 0.11}, quat_identity()});
-    EXPECT_EQ(s.events(60).size(), 1u) << restitution;
+    EXPECT_EQ(s.events(60).size(), touches) << restitution;
   }
 }
 

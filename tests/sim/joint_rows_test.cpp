@@ -130,11 +130,12 @@ TEST(JointRows, StopErpIsThePartOfTheErrorThatOneStepRepairs) {
 
 TEST(JointRows, AJointTornApartComesBackWithoutABang) {
   // 0.2·1 m / (1/240 s) would be 48 m/s
-  for (const AxisSettings& settings : {limited_axis(1, 2), limited_axis(1, 1)}) {
-    Slider s(0, settings);
-    s.steps(1);
-    EXPECT_NEAR(s.v(), 20, 1e-3);
-  }
+  Slider limited(0, limited_axis(1, 2));
+  limited.steps(1);
+  EXPECT_NEAR(limited.v(), 2, 1e-3);
+  Slider locked(0, limited_axis(1, 1));
+  locked.steps(1);
+  EXPECT_NEAR(locked.v(), 20, 1e-3);
 }
 
 TEST(JointRows, StopCfmIsTheYieldPerLoadOfLimitsAndLocks) {
