@@ -430,6 +430,30 @@ local motor_ = {}
 ---@field angular_spring_stiffness? vec3like|number # N·m/rad, 0 .. 1000000, default 0 0 0. Spring stiffness about each axis.
 ---@field angular_spring_damping? vec3like|number # N·m·s/rad, 0 .. 1000000, default 0 0 0. Spring damping about each axis.
 
+---Couples two joints both ways: position of b = ratio * position of a + offset. Made by sim:add_gear.
+---@class gear
+---@field name string # read-only.
+---@field alive boolean # read-only. Whether it still exists; it goes with its joints' bodies.
+---@field joint_a joint # read-only.
+---@field joint_b joint # read-only.
+---@field enabled boolean # default true. False: the joints are free of each other.
+---@field ratio number # -1000000 .. 1000000, default 1. Travel of joint b per travel of joint a; not 0.
+---@field offset number # m | rad, -10000 .. 10000, default 0. Position of joint b where joint a is at 0.
+---@field max_force number # N | N·m, 0 .. 1000000000, default 0. Largest force or torque on joint b's axis; beyond it the gear slips. 0: no limit.
+---@field error number # read-only, m | rad. How far joint b is from its position by the gear.
+---@field force number # read-only, N | N·m. Force or torque on joint b's axis, mean of the last tick; joint a gets −ratio times this.
+local gear_ = {}
+
+---Removes the gear.
+function gear_:remove() end
+
+---@class gear_opts
+---@field name? string # Left out: the names of both joints.
+---@field enabled? boolean # default true. False: the joints are free of each other.
+---@field ratio? number # -1000000 .. 1000000, default 1. Travel of joint b per travel of joint a; not 0.
+---@field offset? number # m | rad, -10000 .. 10000, default 0. Position of joint b where joint a is at 0.
+---@field max_force? number # N | N·m, 0 .. 1000000000, default 0. Largest force or torque on joint b's axis; beyond it the gear slips. 0: no limit.
+
 ---What parts look like and touch with.
 ---@class shape
 ---@field name string # read-only.
@@ -474,6 +498,10 @@ function shape_:add_child(child, position, rotation) end
 ---@field [integer] joint
 ---@overload fun(self: body, wanted?: string|joint|(string|joint)[]): fun(): joint, integer
 
+---@class gear_list
+---@field [integer] gear
+---@overload fun(self: sim, wanted?: string|gear|(string|gear)[]): fun(): gear, integer
+
 ---@class motor_list
 ---@field [integer] motor
 ---@overload fun(self: body, wanted?: string|motor|(string|motor)[]): fun(): motor, integer
@@ -485,6 +513,7 @@ function shape_:add_child(child, position, rotation) end
 ---@field alive boolean # read-only. Always true.
 ---@field bodies body_list # read-only. In stream order; called, it walks those that a pattern matches.
 ---@field collision_groups string[] # Names of the 16 collision groups, in order of their bits; set at the top level.
+---@field gears gear_list # read-only. Made by add_gear, in stream order.
 ---@field gravity vec3like # m/s², -10000 .. 10000, default 0 0 -9.81. Acceleration of everything that moves.
 ---@field timestep number # s, 1e-05 .. 1, default 0.0166667. What a tick advances the time by.
 ---@field substeps integer # 1 .. 1000, default 4. Equal internal steps that a tick is made of.
@@ -535,6 +564,19 @@ function sim:add_group_behavior(type, name, opts) end
 ---@param name string|behavior_group
 ---@return behavior_group
 function sim:group_behavior(name) end
+
+---Couples the own axes of two joints, of one body or of two, both ways: position of b = ratio * position of a + offset.
+---@param joint_a joint # Revolute, continuous or prismatic.
+---@param joint_b joint
+---@param ratio number # Travel of b per travel of a; not 0.
+---@param opts? gear_opts # `offset` left out: from the present positions.
+---@return gear
+function sim:add_gear(joint_a, joint_b, ratio, opts) end
+
+---A gear by its name or number (-1: the last).
+---@param key string|integer|gear
+---@return gear
+function sim:gear(key) end
 
 ---A body by its name or number (-1: the last). An error with the near names when there is none.
 ---@param key string|integer|body

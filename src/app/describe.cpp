@@ -52,7 +52,8 @@ constexpr const char* kHead = "address\tseed's message\tkind\ttype\tunit\trange\
 }  // namespace
 
 std::vector<const Table*> described_classes() {
-  std::vector<const Table*> all = {&World::table(), &Body::table(), &Part::table(), &Joint::table(), &Motor::table()};
+  std::vector<const Table*> all = {&World::table(), &Body::table(),  &Part::table(),
+                                   &Joint::table(), &Motor::table(), &Gear::table()};
   const BehaviorTypes types;
   for (const auto& type : types.all()) {
     all.push_back(type->table);

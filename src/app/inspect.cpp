@@ -2,7 +2,9 @@
 #include "app/inspect.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
+#include <utility>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -48,16 +50,20 @@ Json of(const FileLink& link) {
 }
 
 Json of(const FileJoint& joint) {
-  return {{"name", joint.name},
-          {"type", joint.type},
-          {"parent", joint.parent},
-          {"child", joint.child},
-          {"axis", of(joint.axis)},
-          {"lower", joint.free ? Json() : Json(joint.lower)},
-          {"upper", joint.free ? Json() : Json(joint.upper)},
-          {"effort", joint.effort},
-          {"velocity", joint.velocity},
-          {"free", joint.free}};
+  Json j = {{"name", joint.name},
+            {"type", joint.type},
+            {"parent", joint.parent},
+            {"child", joint.child},
+            {"axis", of(joint.axis)},
+            {"lower", joint.free ? Json() : Json(joint.lower)},
+            {"upper", joint.free ? Json() : Json(joint.upper)},
+            {"effort", joint.effort},
+            {"velocity", joint.velocity},
+            {"free", joint.free}};
+  if (!joint.mimic.empty()) {
+    j["mimic"] = {{"joint", joint.mimic}, {"multiplier", joint.mimic_multiplier}, {"offset", joint.mimic_offset}};
+  }
+  return j;
 }
 
 const char* kind_name(ShapeKind kind) {
@@ -105,6 +111,16 @@ void add_joints(const BodyModel& model, std::string& out) {
     out += fmt::format("{:<{}}  {:<10}  {:<26}  {:<22}  {:>8.5g}  {} -> {}\n", printable(j.name), width, j.type,
                        fmt::format("{:.5g} {:.5g} {:.5g}", j.axis.x, j.axis.y, j.axis.z), limits, j.effort,
                        printable(j.parent), printable(j.child));
+  }
+}
+
+void add_mimics(const BodyModel& model, std::string& out) {
+  bool first = true;
+  for (const FileJoint& j : model.file_joints) {
+    if (j.mimic.empty()) continue;
+    if (std::exchange(first, false)) out += "\nmimic\n";
+    out += fmt::format("  {} = {:.6g} * {} {} {:.6g}\n", printable(j.name), j.mimic_multiplier, printable(j.mimic),
+                       j.mimic_offset < 0 ? '-' : '+', std::abs(j.mimic_offset));
   }
 }
 
@@ -168,6 +184,7 @@ std::string inspect_table(const BodyModel& model) {
                                 model.file_joints.size(), mass);
   add_links(model, out);
   if (!model.file_joints.empty()) add_joints(model, out);
+  add_mimics(model, out);
   add_body(model, out);
   add_overlaps(model, out);
   out += model.problems.empty() ? "\nno problems\n" : "\n";

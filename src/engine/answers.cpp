@@ -28,13 +28,16 @@ Outcome answered(Message answer, std::size_t question) {
 
 Outcome Answers::list(std::string_view kind, std::span<const Arg> args) const {
   Message answer{fmt::format("/list/{}", kind), {}};
-  if (kind == "bodies" || kind == "shapes" || kind == "groups") {
+  if (kind == "bodies" || kind == "shapes" || kind == "gears" || kind == "groups") {
     if (!args.empty()) return Outcome::refused("takes no arguments");
     for (const auto& body : world_.bodies()) {
       if (kind == "bodies") answer.args.push_back(Arg::of(body->name()));
     }
     for (const auto& shape : world_.shapes()) {
       if (kind == "shapes") answer.args.push_back(Arg::of(shape->name()));
+    }
+    for (const auto& gear : world_.gears()) {
+      if (kind == "gears") answer.args.push_back(Arg::of(gear->name()));
     }
     for (const BehaviorGroup* group : world_.behaviors().groups()) {
       if (kind == "groups") answer.args.push_back(Arg::of(group->name()));

@@ -13,8 +13,8 @@ class Answers {
   /// `work` is what patterns of a question may cost.
   Answers(World& world, HintBudget& hints, PatternBudget& work) : world_(world), hints_(hints), work_(work) {}
 
-  /// /list/bodies, /list/shapes, /list/groups; /list/parts, joints, motors, behaviors of a body: names in the streams'
-  /// order; an empty text where there is none.
+  /// /list/bodies, /list/shapes, /list/gears, /list/groups; /list/parts, joints, motors, behaviors of a body: names in
+  /// the streams' order; an empty text where there is none.
   Outcome list(std::string_view kind, std::span<const Arg> args) const;
   /// /get: the row's address and value; a pattern answers for each.
   Outcome get(std::span<const Arg> args) const;

@@ -94,6 +94,7 @@ class Applying {
     remove_bodies(things);
     shapes(things);
     bodies(things);
+    gears();
     apply_behaviors(a_, bodies_, kept_behaviors_);
     for (const std::size_t gone : a_.difference.gone_shapes) {
       if (Shape* const shape = living<Shape>(a_.world, things.shapes[gone])) a_.world.remove_shape(*shape);
@@ -162,6 +163,44 @@ class Applying {
       if (differs) ++next;
       bodies_.push_back(body);
     }
+  }
+
+  // A gear that was removed, or whose body was, comes back with the values of the scene; others keep theirs.
+  void gears() {
+    for (const std::string& name : a_.difference.gone_gears) {
+      if (Gear* const gone = a_.world.find_gear(name)) a_.world.remove_gear(*gone);
+    }
+    std::vector<Gear*> order;
+    for (std::size_t i = 0; i < a_.now.gears.size(); i++) {
+      const GearDescription& now = a_.now.gears[i];
+      const Gear& described = *a_.draft.gears()[i];
+      Joint* const a = joint_of(now.body_a, now.joint_a);
+      Joint* const b = joint_of(now.body_b, now.joint_b);
+      LIMBER_CHECK(a != nullptr && b != nullptr);
+      Gear* live = a_.world.find_gear(now.name);
+      if (live != nullptr && (&live->joint_a() != a || &live->joint_b() != b)) {
+        a_.world.remove_gear(*live);
+        live = nullptr;
+      }
+      if (live == nullptr) {
+        const Result<Gear*> made = a_.world.add_gear(now.name, *a, *b, described.ratio(), described.offset());
+        LIMBER_CHECK(made.ok());
+        live = *made;
+        set_rows(described.id(), live->id(), described_rows(Gear::table()));
+      } else {
+        const GearDifference& difference = a_.difference.gears[i];
+        set_rows(described.id(), live->id(), difference.rows);
+      }
+      order.push_back(live);
+    }
+    a_.world.order_gears(order);
+  }
+
+  Joint* joint_of(const std::string& body, const std::string& joint) const {
+    for (Body* const each : bodies_) {
+      if (each->name() == body) return each->find_joint(joint);
+    }
+    return nullptr;
   }
 
   // new, or back after it was removed, or one of the performance that the scene now describes

@@ -121,6 +121,12 @@ Description describe(const World& world) {
   }
   out.bodies.reserve(world.bodies().size());
   for (const auto& body : world.bodies()) out.bodies.push_back(body_of(*body, shapes));
+  for (const auto& gear : world.gears()) {
+    const Joint& a = gear->joint_a();
+    const Joint& b = gear->joint_b();
+    out.gears.push_back(
+        {gear->name(), a.body().name(), a.name(), b.body().name(), b.name(), rows_of(world.store(), gear->id())});
+  }
   for (const BehaviorGroup* group : world.behaviors().groups()) {
     out.groups.push_back({group->name(), group->type().name, group->type().group_table, group->setup(),
                           rows_of(world.store(), group->id())});

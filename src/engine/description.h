@@ -77,6 +77,12 @@ struct GroupDescription {
   GroupSetup setup;
   SaidRows rows;
 };
+struct GearDescription {
+  std::string name;
+  std::string body_a, joint_a;
+  std::string body_b, joint_b;
+  SaidRows rows;
+};
 struct BodyDescription {
   std::string name;
   SaidRows rows;
@@ -95,6 +101,7 @@ struct Description {
   SaidRows look;
   std::vector<std::shared_ptr<const ShapeDescription>> shapes;
   std::vector<BodyDescription> bodies;
+  std::vector<GearDescription> gears;
   std::vector<GroupDescription> groups;
   std::vector<std::string> behavior_order;  ///< BehaviorList::order()
 };

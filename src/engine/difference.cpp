@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <string_view>
+#include <tuple>
 #include <unordered_map>
 
 namespace limber {
@@ -250,7 +251,9 @@ bool Difference::empty() const {
   const auto there = [](const std::optional<std::size_t>& before) { return before.has_value(); };
   const auto same = [](const BehaviorDifference& d) { return d.described && !d.anew && d.rows == 0; };
   const auto all_same = [&](const auto& list) { return std::all_of(list.begin(), list.end(), same); };
-  return !other_order && gone_behaviors.empty() && gone_groups.empty() && all_same(groups) &&
+  const auto same_gear = [](const GearDifference& d) { return d.described && d.same_joints && d.rows == 0; };
+  return !other_order && gone_gears.empty() && std::all_of(gears.begin(), gears.end(), same_gear) &&
+         gone_behaviors.empty() && gone_groups.empty() && all_same(groups) &&
          std::all_of(behaviors.begin(), behaviors.end(), all_same) && world == 0 && visuals == 0 && camera == 0 &&
          look == 0 && shapes.empty() && bodies.empty() && gone_shapes.empty() && gone_bodies.empty() &&
          std::all_of(shapes_before.begin(), shapes_before.end(), there) &&
@@ -316,6 +319,18 @@ void compare_behaviors(const Description& before, const Description& now, Differ
   out.other_order = before.behavior_order != now.behavior_order;
 }
 
+void compare_gears(const Description& before, const Description& now, Difference& out) {
+  const auto joints = [](const GearDescription& g) { return std::tie(g.body_a, g.joint_a, g.body_b, g.joint_b); };
+  for (const GearDescription& is : now.gears) {
+    const GearDescription* const was = named(before.gears, is.name);
+    const bool same_joints = was != nullptr && joints(*was) == joints(is);
+    out.gears.push_back({was != nullptr, same_joints, rows_to_set(was == nullptr ? nullptr : &was->rows, is.rows)});
+  }
+  for (const GearDescription& was : before.gears) {
+    if (named(now.gears, was.name) == nullptr) out.gone_gears.push_back(was.name);
+  }
+}
+
 }  // namespace
 
 Difference compare(const Description& before, const Description& now) {
@@ -342,6 +357,7 @@ Difference compare(const Description& before, const Description& now) {
     difference.before = out.bodies_before[i];
     if (!difference.empty()) out.bodies.push_back(std::move(difference));
   }
+  compare_gears(before, now, out);
   compare_behaviors(before, now, out);
   return out;
 }

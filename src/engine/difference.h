@@ -45,6 +45,13 @@ struct BehaviorDifference {
   std::uint64_t rows = 0;  ///< To be set, by the table that it has now.
 };
 
+/// What a gear is to become. A gear between other joints is made again.
+struct GearDifference {
+  bool described = false;   ///< The description before had it.
+  bool same_joints = true;  ///< Between the same joints.
+  std::uint64_t rows = 0;   ///< To be set.
+};
+
 struct Difference {
   std::uint64_t world = 0;                                ///< Rows of the world to be set.
   std::uint64_t visuals = 0;                              ///< Of the picture's background,
@@ -61,6 +68,8 @@ struct Difference {
   /// Behaviours that are no longer described, by body (a number of the description now) and name.
   std::vector<std::pair<std::size_t, std::string>> gone_behaviors;
   std::vector<std::string> gone_groups;
+  std::vector<GearDifference> gears;  ///< Each gear now.
+  std::vector<std::string> gone_gears;
   bool other_order = false;  ///< Behaviours act in another order.
 
   bool empty() const;

@@ -37,6 +37,7 @@ constexpr Irregular kIrregulars[] = {
     {"/list/joints", "body", "Answers with the body and its joints' names, in the order of the streams."},
     {"/list/motors", "body", "Answers with the body and its motors' names."},
     {"/list/behaviors", "body", "Answers with the body and its behaviours' names, in the order in which they act."},
+    {"/list/gears", "", "Answers with the names of the gears."},
     {"/list/groups", "", "Answers with the names of the group behaviours."},
     {"/list/shapes", "", "Answers with the names of the scene's shapes."},
     {"/list/scenes", "", "Answers with the names of the scenes in the folder of the one that plays."},

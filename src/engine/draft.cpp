@@ -42,6 +42,7 @@ void Draft::find_spots() {
     put_all(body.motors(), Kind::motor, i);
     put_all(body.behaviors(), Kind::behavior, i);
   }
+  put_all(world_.gears(), Kind::gear, 0);
   put_all(world_.behaviors().groups(), Kind::group, 0);
 }
 
@@ -55,6 +56,10 @@ NodeId Draft::live_id(NodeId id, const World& live, const std::vector<NodeId>& s
   if (spot.kind == Kind::camera) return live.visuals().camera().id();
   if (spot.kind == Kind::look) return live.visuals().look().id();
   if (spot.kind == Kind::shape) return shapes[spot.owner];
+  if (spot.kind == Kind::gear) {
+    const Gear* const gear = live.find_gear(description_->gears[spot.number].name);
+    return gear == nullptr ? NodeId{} : gear->id();
+  }
   if (spot.kind == Kind::group) {
     const BehaviorGroup* const group = live.behaviors().find_group(description_->groups[spot.number].name);
     return group == nullptr ? NodeId{} : group->id();

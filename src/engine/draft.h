@@ -59,6 +59,7 @@ class Draft {
     part,
     joint,
     motor,
+    gear,
     behavior,
     group
   };

@@ -26,6 +26,7 @@ std::string thing_text(const std::vector<std::string_view>& names) {
   if (is(0, "scene") && n == 1) return "params";
   if (is(0, "physics") && is(1, "sim") && n == 2) return "sim";
   if (is(0, "physics") && is(1, "group") && n == 3) return fmt::format("sim:group_behavior({})", lua_text(names[2]));
+  if (is(0, "physics") && is(1, "gear") && n == 3) return fmt::format("sim:gear({})", lua_text(names[2]));
   if (is(0, "visuals") && n == 1) return "visuals";
   if (is(0, "visuals") && is(1, "shape") && n == 3) return fmt::format("visuals:shape({})", lua_text(names[2]));
   if (is(0, "visuals") && n == 2 && !is(1, "shape")) return fmt::format("visuals.{}", names[1]);

@@ -15,10 +15,10 @@ struct Title {
   std::string_view name, title;
 };
 // the top of the tree, in the order in which it is shown; what is not named here comes behind
-constexpr std::array kTitles = {Title{"scene", "scene"},     Title{"sim", "world"},
-                                Title{"body", "bodies"},     Title{"group", "groups"},
-                                Title{"visuals", "picture"}, Title{"transport", "transport"},
-                                Title{"preset", "presets"},  Title{"osc", "OSC counters"}};
+constexpr std::array kTitles = {
+    Title{"scene", "scene"},         Title{"sim", "world"},      Title{"body", "bodies"},
+    Title{"gear", "gears"},          Title{"group", "groups"},   Title{"visuals", "picture"},
+    Title{"transport", "transport"}, Title{"preset", "presets"}, Title{"osc", "OSC counters"}};
 
 std::size_t rank(std::string_view name) {
   const auto* found = std::find_if(kTitles.begin(), kTitles.end(), [&](const Title& t) { return t.name == name; });

@@ -148,6 +148,9 @@ struct FileJoint {
   double upper = 0;
   double effort = 0;
   double velocity = 0;
+  std::string mimic;  ///< The joint that it follows, chains resolved; empty: none.
+  double mimic_multiplier = 1;
+  double mimic_offset = 0;
 };
 
 /// A body, ready to be built. Links and joints in stream order: root first, depth first, joints in file order.

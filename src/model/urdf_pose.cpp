@@ -1,6 +1,7 @@
 // Who follows whom, where joints start, where links are; and the lists of the file as it is.
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <string_view>
 #include <unordered_map>
 #include <vector>
@@ -35,6 +36,9 @@ class Mimics {
     }
     for (std::size_t i = 0; i < from_.size(); ++i) {
       if (to_[i] >= 0) resolve(i);
+    }
+    for (std::size_t i = 0; i < from_.size(); ++i) {
+      if (build_.model.joints[i].mimic >= 0) check_reach(i);
     }
   }
 
@@ -78,6 +82,58 @@ class Mimics {
     joint.mimic = static_cast<int>(at);
     joint.mimic_multiplier = multiplier;
     joint.mimic_offset = offset;
+    if (static_cast<int>(at) == to_[i]) return;
+    build_.problems.note(from_[i]->line,
+                         fmt::format("joint '{}': follows '{}', which follows another joint; it follows '{} instead",
+                                     printable(joint.name), printable(from_[i]->joint), relation(joint)),
+                         "Nothing to do.");
+  }
+
+  // "lead' * -1 + 0.2", to stand between quotes up to the name's end
+  std::string relation(const JointModel& joint) const {
+    std::string text = fmt::format("{}' * {:.6g}", printable(leader_of(joint).name), joint.mimic_multiplier);
+    if (joint.mimic_offset != 0)
+      text += fmt::format(" {} {:.6g}", joint.mimic_offset < 0 ? '-' : '+', std::abs(joint.mimic_offset));
+    return text;
+  }
+
+  const JointModel& leader_of(const JointModel& joint) const {
+    return build_.model.joints[static_cast<std::size_t>(joint.mimic)];
+  }
+
+  // Reports a follower whose limits stop its leader.
+  void check_reach(std::size_t i) {
+    const JointModel& joint = build_.model.joints[i];
+    const JointModel& leader = leader_of(joint);
+    if (!joint.limited) return;
+    constexpr double kSlack = 1e-4;  // files round
+    const double far = std::numeric_limits<double>::infinity();
+    const double multiplier = joint.mimic_multiplier;
+    const auto follows = [&](double at, double free) {
+      return multiplier == 0 ? joint.mimic_offset
+                             : (leader.limited ? multiplier * at : multiplier * free) + joint.mimic_offset;
+    };
+    const double one = follows(leader.lower, -far);
+    const double other = follows(leader.upper, far);
+    const double tolerance = kSlack * (1 + std::abs(multiplier));
+    std::vector<std::string> reached;
+    const auto look = [&](double limit, bool passed) {
+      if (!passed) return;
+      const std::string at =
+          multiplier == 0 ? "anywhere" : fmt::format("at {:.6g}", (limit - joint.mimic_offset) / multiplier);
+      if (reached.empty() || reached.back() != at) reached.push_back(at);
+    };
+    look(joint.lower, std::min(one, other) < joint.lower - tolerance);
+    look(joint.upper, std::max(one, other) > joint.upper + tolerance);
+    if (reached.empty()) return;
+    const std::string range = leader.limited ? fmt::format("{:.6g}..{:.6g}", leader.lower, leader.upper) : "free";
+    build_.problems.warning(
+        from_[i]->line,
+        fmt::format("joint '{}' follows '{}: its limits {:.6g}..{:.6g} are reached when '{}' is {} (range of '{}': {})",
+                    printable(joint.name), relation(joint), joint.lower, joint.upper, printable(leader.name),
+                    fmt::join(reached, " and "), printable(leader.name), range),
+        fmt::format("Widen the limits of '{}', or narrow those of '{}'.", printable(joint.name),
+                    printable(leader.name)));
   }
 
   UrdfBuild& build_;
@@ -180,6 +236,13 @@ void place(UrdfBuild& build) {
       link.home = parent.home * joint.origin.pose();
       link.start = parent.start * joint.origin.pose() * motion(joint, start);
       build.model.file_joints.push_back(file_joint(joint));
+      if (at >= 0 && build.model.joints[static_cast<std::size_t>(at)].mimic >= 0) {
+        const JointModel& follower = build.model.joints[static_cast<std::size_t>(at)];
+        FileJoint& listed = build.model.file_joints.back();
+        listed.mimic = build.model.joints[static_cast<std::size_t>(follower.mimic)].name;
+        listed.mimic_multiplier = follower.mimic_multiplier;
+        listed.mimic_offset = follower.mimic_offset;
+      }
     }
     link.home.rotation = glm::normalize(link.home.rotation);
     link.start.rotation = glm::normalize(link.start.rotation);

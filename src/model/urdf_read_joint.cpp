@@ -64,6 +64,11 @@ std::optional<UrdfJoint> UrdfReader::joint(const Element& element, const std::st
   if (is_hinge_or_slide(out.type)) {
     limit(element, owner, out);
     out.mimic = mimic(element, owner);
+  } else if (const std::optional<UrdfMimic> ignored = mimic(element, owner)) {
+    problems.error(ignored->line,
+                   fmt::format("{}: is {} and can't follow '{}'; its <mimic> is left out", owner,
+                               joint_type_name(out.type), printable(ignored->joint)),
+                   "Make it revolute, continuous or prismatic, or remove the <mimic>.");
   }
   const Element* dynamics = only_child(element, "dynamics", owner);
   if (dynamics) check_attributes(*dynamics, {"damping", "friction"});

@@ -23,6 +23,7 @@ constexpr std::array kUnits = {
     Unit{"m | rad", "metre along, radian about the axis"},
     Unit{"N", "newton"},
     Unit{"N·m", "newton metre"},
+    Unit{"N | N·m", "newton along, newton metre about the axis"},
     Unit{"N·s", "newton second"},
     Unit{"N/m", "newton per metre"},
     Unit{"N·s/m", "newton second per metre"},

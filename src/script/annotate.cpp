@@ -24,9 +24,9 @@ namespace {
 constexpr std::size_t kWidth = 116;  // of a line of names
 
 const Table& table_named(std::string_view name) {
-  const std::array<const Table*, 9> classes = {&World::table(),   &Body::table(),   &Part::table(),
-                                               &Joint::table(),   &Motor::table(),  &Shape::table(),
-                                               &Visuals::table(), &Camera::table(), &Look::table()};
+  const std::array<const Table*, 10> classes = {&World::table(), &Body::table(),  &Part::table(),    &Joint::table(),
+                                                &Motor::table(), &Shape::table(), &Visuals::table(), &Camera::table(),
+                                                &Look::table(),  &Gear::table()};
   for (const Table* table : classes) {
     if (table->name() == name) return *table;
   }

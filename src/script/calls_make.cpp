@@ -226,6 +226,20 @@ std::int32_t add_motor(void* c, std::int32_t slot, std::int32_t generation) {
   return made(context, joint->body().add_motor(*joint));
 }
 
+std::int32_t add_gear(void* c, const char* name, std::int32_t length, std::int32_t slot_a, std::int32_t generation_a,
+                      std::int32_t slot_b, std::int32_t generation_b, double ratio, double offset) {
+  ScriptContext& context = context_of(c);
+  if (is_full(context)) return kRefused;
+  Joint* a = thing_of<Joint>(context, id_of(slot_a, generation_a));
+  Joint* b = thing_of<Joint>(context, id_of(slot_b, generation_b));
+  if (a == nullptr || b == nullptr) return kGone;
+  const bool given = !std::isnan(offset);
+  const Result<Gear*> gear = context.world->add_gear(std::string(text_of(name, length)), *a, *b, ratio,
+                                                     given ? std::optional(offset) : std::nullopt);
+  if (gear && given) say(context, (*gear)->id(), "offset");
+  return made(context, gear);
+}
+
 std::int32_t add_shape(void* c, const char* name, std::int32_t length, const char* kind, const double* n) {
   ScriptContext& context = context_of(c);
   if (is_full(context)) return kRefused;

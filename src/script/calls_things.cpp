@@ -11,7 +11,7 @@ namespace limber::calls {
 
 namespace {
 
-enum Kind : std::int32_t { bodies, parts, joints, motors, shapes, behaviors, groups };
+enum Kind : std::int32_t { bodies, parts, joints, motors, shapes, behaviors, groups, gears };
 
 // the i-th of a span of owned things, or a null id behind the end; the count when i is -1
 template <class T>
@@ -31,6 +31,7 @@ std::int32_t item(ScriptContext& c, std::span<T* const> list, std::int32_t i) {
 std::int32_t list_at(ScriptContext& c, NodeId id, std::int32_t kind, std::int32_t i) {
   if (kind == bodies) return item(c, c.world->bodies(), i);
   if (kind == shapes) return item(c, c.world->shapes(), i);
+  if (kind == gears) return item(c, c.world->gears(), i);
   if (kind == groups) {
     const std::vector<BehaviorGroup*> all = c.world->behaviors().groups();
     return item<BehaviorGroup>(c, all, i);
@@ -105,6 +106,9 @@ std::int32_t related(void* c, std::int32_t slot, std::int32_t generation, std::i
     return context.tell(joint->motor() == nullptr ? NodeId{} : joint->motor()->id());
   }
   if (const Motor* motor = thing_of<Motor>(context, id)) return context.tell(motor->joint().id());
+  if (const Gear* gear = thing_of<Gear>(context, id)) {
+    return context.tell(which == 0 ? gear->joint_a().id() : gear->joint_b().id());
+  }
   if (const Part* part = thing_of<Part>(context, id)) {
     return context.tell(context.alive(part->shape()) ? part->shape() : NodeId{});
   }
@@ -127,6 +131,7 @@ std::int32_t find(void* c, std::int32_t slot, std::int32_t generation, std::int3
   const std::string_view wanted = text_of(name, length);
   if (kind == bodies) return found(context, world.find_body(wanted), world.bodies(), "body", "there is", wanted);
   if (kind == shapes) return found(context, world.find_shape(wanted), world.shapes(), "shape", "there is", wanted);
+  if (kind == gears) return found(context, world.find_gear(wanted), world.gears(), "gear", "there is", wanted);
   const NodeId id = id_of(slot, generation);
   if (kind == groups) {
     const std::vector<BehaviorGroup*> all = world.behaviors().groups();
@@ -151,8 +156,8 @@ std::int32_t find(void* c, std::int32_t slot, std::int32_t generation, std::int3
 }
 
 double order(void* c, std::int32_t slot, std::int32_t generation) {
-  // bodies first to last, within a body itself, its parts, joints, motors, behaviours; then shapes, groups; the gone
-  // ones last
+  // bodies first to last, within a body itself, its parts, joints, motors, behaviours; then shapes, gears, groups; the
+  // gone ones last
   const ScriptContext& context = context_of(c);
   const World& world = *context.world;
   const NodeId id = id_of(slot, generation);
@@ -181,6 +186,9 @@ double order(void* c, std::int32_t slot, std::int32_t generation) {
   if (const BehaviorGroup* group = group_of(context, id)) {
     const std::vector<BehaviorGroup*> all = world.behaviors().groups();
     return kShapes * 1.25 + static_cast<double>(std::find(all.begin(), all.end(), group) - all.begin());
+  }
+  if (const Gear* gear = thing_of<Gear>(context, id)) {
+    return kShapes * 1.125 + static_cast<double>(place_in(world.gears(), gear));
   }
   if (const Shape* shape = thing_of<Shape>(context, id)) {
     return kShapes + static_cast<double>(place_in(world.shapes(), shape));

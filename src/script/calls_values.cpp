@@ -67,7 +67,7 @@ const LimberSolids* solids(void* c) { return reinterpret_cast<const LimberSolids
 
 std::int32_t class_table(void* c, std::int32_t which) {
   const Table* const tables[] = {&World::table(), &Body::table(),    &Part::table(),   &Joint::table(), &Motor::table(),
-                                 &Shape::table(), &Visuals::table(), &Camera::table(), &Look::table()};
+                                 &Shape::table(), &Visuals::table(), &Camera::table(), &Look::table(),  &Gear::table()};
   return static_cast<std::int32_t>(context_of(c).world->store().table_number(*tables[which]));
 }
 

@@ -139,7 +139,8 @@ std::string label_of(const ScriptContext& c, NodeId id) {
   if (table == &Camera::table()) return "visuals.camera";
   if (table == &Look::table()) return "visuals.look";
   const std::string& name = store.name(id);
-  if (table == &Body::table() || table == &Shape::table()) return fmt::format("{} '{}'", table->name(), name);
+  if (table == &Body::table() || table == &Shape::table() || table == &Gear::table())
+    return fmt::format("{} '{}'", table->name(), name);
   if (group_of(c, id) != nullptr) return fmt::format("group '{}'", name);
   if (table == &Part::table() || table == &Joint::table() || table == &Motor::table() ||
       behavior_of(c, id) != nullptr) {

@@ -191,7 +191,6 @@ Result<Motor*> Body::add_motor(Joint& joint) {
   if (joint.motor() != nullptr) return fault("has a motor already");
   if (joint.type() == JointType::fixed) return fault("is fixed and takes no motor");
   motors_.push_back(std::make_unique<Motor>(joint, motor_group_));
-  if (joint.spec().mimic) followers_.push_back(motors_.back().get());
   structure_++;
   world_.undo().made_motor(*this);
   return motors_.back().get();
@@ -229,18 +228,18 @@ void Body::build(const std::shared_ptr<const BodyModel>& model, const BuildOptio
     joint.tell();
     if (m.type != JointType::fixed) build_motor(joint, m, options.servo_motors);
   }
+  couple_followers();
 }
 
 void Body::build_motor(Joint& joint, const JointModel& m, bool servo) {
   motors_.push_back(std::make_unique<Motor>(joint, motor_group_));
   Motor& motor = *motors_.back();
-  if (joint.spec().mimic) followers_.push_back(&motor);
   const bool linear = joint.own_axis() == 2;
   store().tell(motor.id(), Motor::table().at(linear ? "max_linear_force" : "max_angular_force"))[2] = m.effort;
   store().tell(motor.id(), Motor::table().at(linear ? "linear_velocity" : "angular_velocity"))[2] = m.velocity;
   store().tell(motor.id(), Motor::table().at("damping"))[0] = m.damping;
-  // planar and floating joints move in several axes; holding one of them is nobody's wish
-  const bool holds = servo && m.type != JointType::floating && m.type != JointType::planar;
+  // planar and floating joints move in several axes, followers with their leader: no servo holds these by default
+  const bool holds = servo && m.type != JointType::floating && m.type != JointType::planar && !joint.spec().mimic;
   if (!holds) motor.set_mode(MotorMode::off);
 }
 
@@ -280,9 +279,9 @@ void Body::build_copy(const Body& source) {
     joint.constraint().reset(from->constraint().angles());
     if (from->motor() == nullptr) continue;
     motors_.push_back(std::make_unique<Motor>(joint, motor_group_));
-    if (joint.spec().mimic) followers_.push_back(motors_.back().get());
     copy_values(from->motor()->id(), motors_.back()->id(), Motor::table());
   }
+  couple_followers();
   world_.behaviors().copy(source, *this);
 }
 
@@ -326,6 +325,7 @@ void Body::enter() {
   if (!in_world_) return;
   for (; entered_parts_ < parts_.size(); entered_parts_++) parts_[entered_parts_]->enter();
   for (; entered_joints_ < joints_.size(); entered_joints_++) joints_[entered_joints_]->enter();
+  for (Joint* follower : followers_) follower->enter_mimic_gear();
 }
 
 void Body::effect_self_collision() {
@@ -373,15 +373,6 @@ void Body::reset() {
 void Body::take_start_pose() {
   for (const auto& part : parts_) part->set_start_pose(part->pose());
   for (const auto& joint : joints_) joint->take_start();
-}
-
-void Body::settle_joints() {
-  if (!std::exchange(moved_, false)) return;
-  for (const auto& joint : joints_) joint->read_anew();
-}
-
-void Body::follow_leaders() {
-  for (Motor* motor : followers_) motor->follow();
 }
 
 void Body::take_good_pose() {

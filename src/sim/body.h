@@ -104,12 +104,14 @@ class Body {
   /// A part's pose was set by hand: joints read it anew before the next step.
   void note_moved();
 
-  /// Before Bullet steps: followers' targets from their leaders.
-  void follow_leaders();
+  /// Joints that are coupled to a leader (URDF mimic), in their order.
+  std::span<Joint* const> followers() const { return followers_; }
   /// Readouts of its parts and joints. [any thread, while nobody else is at this body]
   void tell();
   /// After tell(): logs springs that are held at less than they were told and targets outside limits, once each.
   void say_caps();
+  /// Logs followers that something holds away from where their leader puts them, once each.
+  void report_slips() const;
   /// The present pose is what health goes back to.
   void take_good_pose();
   std::uint64_t state_hash(std::uint64_t start) const;
@@ -126,7 +128,9 @@ class Body {
   void build_motor(Joint& joint, const JointModel& m, bool servo);
   void build_copy(const Body& source);
   void enter();
-  void settle_joints();
+  /// True when parts were moved by hand.
+  bool settle_joints();
+  void couple_followers();
   void effect_enabled();
   void effect_self_collision();
   void set_pair(std::size_t a, std::size_t b, PairEdit edit);
@@ -154,7 +158,7 @@ class Body {
   std::vector<std::unique_ptr<Part>> parts_;
   std::vector<std::unique_ptr<Joint>> joints_;
   std::vector<std::unique_ptr<Motor>> motors_;
-  std::vector<Motor*> followers_;
+  std::vector<Joint*> followers_;
   std::vector<Behavior*> behaviors_;
   std::uint32_t structure_ = 0;  // counts what is added: behaviours then look for their targets anew
   PartPairs pairs_;

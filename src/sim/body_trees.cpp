@@ -1,6 +1,7 @@
 // Body: its trees of parts, each of which stands on its own, and start poses that another body tells.
 #include <algorithm>
 #include <unordered_map>
+#include <utility>
 
 #include "sim/body.h"
 
@@ -37,6 +38,12 @@ void Body::move_tree(std::size_t first, const Pose& pose) {
 void Body::take_start_pose(const Body& other) {
   for (std::size_t i = 0; i < other.parts_.size(); i++) parts_[i]->set_start_pose(other.parts_[i]->pose());
   for (std::size_t i = 0; i < other.joints_.size(); i++) joints_[i]->take_start(*other.joints_[i]);
+}
+
+bool Body::settle_joints() {
+  if (!std::exchange(moved_, false)) return false;
+  for (const auto& joint : joints_) joint->read_anew();
+  return true;
 }
 
 }  // namespace limber

@@ -75,7 +75,10 @@ void start_contacts_anew(IslandPools& pools) {
 
 }  // namespace
 
-void IslandDirect::start() { links_.clear(); }
+void IslandDirect::start() {
+  links_.clear();
+  gears_.clear();
+}
 
 void IslandDirect::add_joint(JointConstraint& joint, int body_a, int body_b) {
   links_.push_back({&joint, body_a, body_b, -1, 0, Vec3(0), Vec3(0)});
@@ -314,6 +317,7 @@ bool IslandDirect::settle_all(IslandPools& pools, double h) {
   known_axes_.clear();
   collect_contacts(pools);
   collect_loops(pools);
+  collect_gears(pools);
   fixed_outer_ = outer_.size();
   bool settled = settle();
   for (int pass = 0; pass < kNarrowings && settled && narrow_friction(); ++pass) settled = settle();
@@ -367,6 +371,7 @@ bool IslandDirect::solve(IslandPools pools, const btContactSolverInfo& info) {
       link.joint->forget_impulses();
       link.joint->tree_memory().fill(0);
     }
+    for (const GearLink& link : gears_) link.gear->forget_impulses();
     return false;
   }
   counts_.direct++;
@@ -405,6 +410,7 @@ void IslandDirect::write(IslandPools& pools) {
     }
     link.joint->take_impulses(impulses_);
   }
+  for (const GearLink& link : gears_) link.gear->take_impulse(outer_[at(link.outer)].impulse);
 }
 
 }  // namespace limber

@@ -11,6 +11,7 @@
 #include "sim/box_solver.h"
 #include "sim/bullet.h"
 #include "sim/effort.h"
+#include "sim/gear_constraint.h"
 #include "sim/joint_constraint.h"
 #include "sim/tree_rows.h"
 
@@ -45,6 +46,8 @@ class IslandDirect {
   void start();
   /// A joint with its rows planned, and its two solver bodies.
   void add_joint(JointConstraint& joint, int body_a, int body_b);
+  /// A gear with its row planned, and the solver body of each of its sides.
+  void add_gear(GearConstraint& gear, const std::array<int, 4>& bodies) { gears_.push_back({&gear, bodies, 0}); }
   int joint_count() const { return static_cast<int>(links_.size()); }
   /// False when the plain solver has to do it, with nothing written; where what was found is absurd, impulses of the
   /// step before are taken back, too.
@@ -67,6 +70,11 @@ class IslandDirect {
     Vec3 bent;  // what was already asked of its locked linear axes, m
     Vec3 bend;  // and what should be
   };
+  struct GearLink {
+    GearConstraint* gear;
+    std::array<int, 4> bodies;
+    int outer;  // its row in outer_
+  };
   struct Tree {
     int first;
     int last;
@@ -79,9 +87,10 @@ class IslandDirect {
     int node = -1;
     Spatial pull;
   };
-  struct Pull {  // what an impulse acts on: two bodies, or an axis of the first
+  struct Pull {  // what an impulse acts on: two bodies (of a gear up to four), or an axis of the first
     Side a, b;
     int axis = -1;
+    int gear = -1;
   };
   struct KnownAxes {
     unsigned held;
@@ -92,8 +101,11 @@ class IslandDirect {
     int begin = 0;  // in felt_
     int count = 0;
   };
+  /// Trees that a row acts on; those behind the last have no tree.
+  using Reaches = std::array<Reach, 4>;
   struct OuterRow {
     Side a, b;
+    int gear = -1;                          // in gears_: the row acts on gear_sides_ of it, too
     TreeRow* axis = nullptr;                // a row of a tree's axis instead
     btSolverConstraint* contact = nullptr;  // where the impulse goes
     double target = 0;                      // rate + softness·impulse, as changes from the start
@@ -127,12 +139,23 @@ class IslandDirect {
   void collect_contacts(IslandPools& pools);
   void add_contact(btSolverConstraint& row, int normal, double most);
   void collect_loops(const IslandPools& pools);
+  void collect_gears(const IslandPools& pools);
   void collect_axes();
   void allow_work();
+  /// Calls f(side) for each body that a row, or a pull, acts on.
+  template <class Row, class F>
+  void for_each_side(const Row& row, F&& f) const {
+    if (row.a.node >= 0) f(row.a);
+    if (row.b.node >= 0) f(row.b);
+    if (row.gear < 0) return;
+    for (const Side& side : gear_sides_[at(row.gear)]) {
+      if (side.node >= 0) f(side);
+    }
+  }
   double rate_of(const OuterRow& row) const;
   int tree_at(int node) const { return node < 0 ? -1 : tree_of_[static_cast<std::size_t>(node)]; }
   void load(const OuterRow& row, double impulse);
-  void feel(const OuterRow& row, std::array<Reach, 2>& reaches);
+  void feel(const OuterRow& row, Reaches& reaches);
   int take_contacts();
   void gather_rows();
   int name_of(int outer) const;
@@ -144,6 +167,7 @@ class IslandDirect {
   static Pull pull_on(const OuterRow& row);
   void answer(const Pull& to, std::span<double> rows, std::span<double> axes);
   bool give_up_pinned();
+  int give_up_gear(OuterRow& row);
   int give_up_touched();
   int give_up_broken();
   enum class Solve : std::uint8_t { anew, polish };
@@ -197,6 +221,8 @@ class IslandDirect {
   BoxSolver box_{effort_};
   BoxSolver push_box_{effort_};
   std::vector<Link> links_;
+  std::vector<GearLink> gears_;
+  std::vector<std::array<Side, 2>> gear_sides_;  // gear: the sides that its row has no room for
   std::vector<Tree> trees_;
   std::vector<int> tree_of_;  // node
   std::vector<int> body_of_;  // node
@@ -207,15 +233,16 @@ class IslandDirect {
   std::vector<int> body_links_;
   std::vector<int> stack_;
   std::vector<OuterRow> outer_;
-  std::vector<int> boxed_;                     // rows of outer_ that are solved for
-  std::vector<int> place_;                     // outer row: where in boxed_; -1: aside
-  std::vector<double> felt_;                   // by rows of a box, one after the other
-  std::vector<std::array<Reach, 2>> reaches_;  // row of a box: the trees it touches
+  std::vector<int> boxed_;         // rows of outer_ that are solved for
+  std::vector<int> place_;         // outer row: where in boxed_; -1: aside
+  std::vector<double> felt_;       // by rows of a box, one after the other
+  std::vector<double> felt_more_;  // by a third and fourth body in one tree
+  std::vector<Reaches> reaches_;   // row of a box: the trees it touches
   std::vector<double> impulses_;
   std::vector<int> push_rows_;
   std::vector<std::pair<btVector3, btVector3>>
       before_calm_;                    // body: changes that contacts began with; empty: not calmed
-  std::size_t fixed_outer_ = 0;        // contacts and loops; behind them axes that were given up
+  std::size_t fixed_outer_ = 0;        // contacts, loops and gears; behind them axes that were given up
   std::vector<double> unbent_work_;    // tree: of its locks, unbent, J
   std::uint64_t box_factors_ = 0;      // that box_ has the responses of
   std::vector<int> names_;             // of boxed_

@@ -1,4 +1,4 @@
-// What stands around the trees: contacts, friction, joints that close loops, and axes whose row in force did not
+// What stands around the trees: contacts, friction, joints that close loops, gears, and axes whose row in force did not
 // settle. All are solved together, against the response of the trees.
 #include <algorithm>
 #include <cmath>
@@ -112,7 +112,32 @@ void IslandDirect::collect_loops(const IslandPools& pools) {
   }
 }
 
-// Behind contacts and loops: the rows of axes that were given up.
+// One row each, on up to four bodies.
+void IslandDirect::collect_gears(const IslandPools& pools) {
+  gear_sides_.clear();
+  for (GearLink& link : gears_) {
+    link.outer = static_cast<int>(outer_.size());
+    const GearConstraint::Row& row = link.gear->row();
+    OuterRow out;
+    out.loop = true;
+    out.gear = static_cast<int>(gear_sides_.size());
+    std::array<Side, 2>& more = gear_sides_.emplace_back();
+    out.target = row.velocity;
+    const std::span<const GearConstraint::Side> sides = link.gear->sides();
+    for (std::size_t i = 0; i < sides.size(); ++i) {
+      Side& side = i == 0 ? out.a : i == 1 ? out.b : more[i - 2];
+      side = {node_of_[at(link.bodies[i])], pull_of(sides[i].linear, sides[i].angular)};
+      out.target -= dot(side.pull, velocity(link.bodies[i], pools));
+    }
+    out.softness = row.softness;
+    out.eases = row.mobility;
+    out.lower = -row.bound;
+    out.upper = row.bound;
+    outer_.push_back(out);
+  }
+}
+
+// Behind contacts, loops and gears: the rows of axes that were given up.
 void IslandDirect::collect_axes() {
   outer_.resize(fixed_outer_);
   for (TreeRow& row : system_.rows()) {
@@ -140,9 +165,7 @@ void IslandDirect::allow_work() {
 // Present rate, as a change from the start.
 double IslandDirect::rate_of(const OuterRow& row) const {
   double rate = 0;
-  for (const Side* side : {&row.a, &row.b}) {
-    if (side->node >= 0) rate += dot(side->pull, system_.change(side->node));
-  }
+  for_each_side(row, [&](const Side& side) { rate += dot(side.pull, system_.change(side.node)); });
   return rate;
 }
 
@@ -151,9 +174,7 @@ void IslandDirect::load(const OuterRow& row, double impulse) {
     system_.trees.node(row.axis->node).ask[row.axis->axis] = impulse;
     return;
   }
-  for (const Side* side : {&row.a, &row.b}) {
-    if (side->node >= 0) system_.trees.node(side->node).load += side->pull * impulse;
-  }
+  for_each_side(row, [&](const Side& side) { system_.trees.node(side.node).load += side.pull * impulse; });
 }
 
 // Contacts that stand aside and would be passed through now come back, with their friction; how many rows these were.
@@ -193,7 +214,12 @@ bool IslandDirect::narrow_friction() {
 bool IslandDirect::give_up_pinned() {
   int given_up = 0;
   for (int i = 0; i < box_.size(); ++i) {
-    const OuterRow& row = outer_[at(boxed_[at(i)])];
+    OuterRow& row = outer_[at(boxed_[at(i)])];
+    if (row.gear >= 0) {
+      const bool pinned = !(box_.response(i, i) - row.softness > kPinned * row.eases);
+      if (pinned) given_up += give_up_gear(row);
+      continue;
+    }
     if (row.contact == nullptr || row.normal >= 0 || box_.response(i, i) > kPinned * row.eases) continue;
     for (const int tree : {tree_at(row.a.node), tree_at(row.b.node)}) {
       if (tree >= 0) given_up += system_.give_up_all(trees_[at(tree)].first, trees_[at(tree)].last);
@@ -202,13 +228,26 @@ bool IslandDirect::give_up_pinned() {
   return given_up > 0;
 }
 
+// A gear both of whose axes are held: their motors and limits give way. Where locks hold them, the gear does nothing.
+int IslandDirect::give_up_gear(OuterRow& row) {
+  int given_up = 0;
+  const GearConstraint& gear = *gears_[at(row.gear)].gear;
+  for (const Link& link : links_) {
+    if (link.node < 0) continue;
+    if (link.joint == &gear.joint_a()) given_up += system_.give_up_axis(link.node, gear.axis_a());
+    if (link.joint == &gear.joint_b()) given_up += system_.give_up_axis(link.node, gear.axis_b());
+  }
+  if (given_up == 0) row.lower = row.upper = 0;
+  return given_up;
+}
+
 int IslandDirect::give_up_touched() {
   int given_up = 0;
   for (const int i : boxed_) {
-    const OuterRow& row = outer_[at(i)];
-    for (const int tree : {tree_at(row.a.node), tree_at(row.b.node)}) {
-      if (tree >= 0) given_up += system_.give_up_all(trees_[at(tree)].first, trees_[at(tree)].last);
-    }
+    for_each_side(outer_[at(i)], [&](const Side& side) {
+      const Tree& tree = trees_[at(tree_at(side.node))];
+      given_up += system_.give_up_all(tree.first, tree.last);
+    });
   }
   return given_up;
 }

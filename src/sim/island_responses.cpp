@@ -21,27 +21,37 @@ constexpr double kLeastRate = 1e-6;
 }  // namespace
 
 // What an impulse of the row lets the free axes of its trees feel, behind all that is in felt_.
-void IslandDirect::feel(const OuterRow& row, std::array<Reach, 2>& reaches) {
-  const auto open = [&](int tree, int count) {
-    const Reach reach{tree, static_cast<int>(felt_.size()), count};
-    felt_.resize(felt_.size() + at(reach.count), 0);
-    return reach;
-  };
-  const auto axes = [&](const Side& side) { return side.node < 0 ? 0 : system_.trees.free_axes(side.node); };
-  const auto take = [&](const Reach& reach, const TreeLoad& a, const TreeLoad& b) {
-    system_.trees.feel(a, b, std::span(felt_).subspan(at(reach.begin), at(reach.count)));
-  };
-  const TreeLoad a{row.a.node, row.a.pull};
-  const TreeLoad b{row.b.node, row.b.pull};
-  const int tree_a = tree_at(a.node);
-  const int tree_b = tree_at(b.node);
-  double* ask = row.axis != nullptr ? &system_.trees.node(a.node).ask[row.axis->axis] : nullptr;
+void IslandDirect::feel(const OuterRow& row, Reaches& reaches) {
+  reaches.fill({});
+  std::array<const Side*, 4> sides{};
+  int count = 0;
+  for_each_side(row, [&](const Side& side) { sides[at(count++)] = &side; });
+  double* ask = row.axis != nullptr ? &system_.trees.node(row.a.node).ask[row.axis->axis] : nullptr;
   if (ask != nullptr) *ask = 1;
-  reaches[0] = open(tree_a, std::max(axes(row.a), tree_b == tree_a ? axes(row.b) : 0));
-  take(reaches[0], a, tree_b == tree_a ? b : TreeLoad{});
+  for (int i = 0, reached = 0; i < count; ++i) {
+    if (sides[at(i)] == nullptr) continue;
+    // the bodies that are in the same tree: at most two pairs
+    const int tree = tree_at(sides[at(i)]->node);
+    std::array<TreeLoad, 4> loads;
+    int loaded = 0;
+    int axes = 0;
+    for (int k = i; k < count; ++k) {
+      const Side* const side = sides[at(k)];
+      if (side == nullptr || tree_at(side->node) != tree) continue;
+      loads[at(loaded++)] = {side->node, side->pull};
+      axes = std::max(axes, system_.trees.free_axes(side->node));
+      sides[at(k)] = nullptr;
+    }
+    reaches[at(reached++)] = {tree, static_cast<int>(felt_.size()), axes};
+    felt_.resize(felt_.size() + at(axes), 0);
+    const std::span<double> felt = std::span(felt_).last(at(axes));
+    system_.trees.feel(loads[0], loads[1], felt);
+    if (loaded <= 2) continue;
+    felt_more_.assign(at(axes), 0);
+    system_.trees.feel(loads[2], loads[3], felt_more_);
+    for (int k = 0; k < axes; ++k) felt[at(k)] += felt_more_[at(k)];
+  }
   if (ask != nullptr) *ask = 0;
-  reaches[1] = open(tree_b == tree_a ? -1 : tree_b, tree_b == tree_a ? 0 : axes(row.b));
-  if (tree_b != tree_a) take(reaches[1], b, {});
 }
 
 // Adds a row's softness to its response. A contact that joints let respond less than its bodies alone would is made
@@ -69,15 +79,20 @@ void IslandDirect::respond(BoxSolver& box, std::span<const int> rows) {
   effort_.lines(felt, kAxisNumbers);
   effort_.lines(0.5 * count * count, felt / (count + 1));
   const auto together = [this](const Reach& a, const Reach& b) {
-    if (a.tree != b.tree || a.tree < 0) return 0.0;
+    if (a.tree != b.tree) return 0.0;
     return product(felt_.data() + a.begin, felt_.data() + b.begin, std::min(a.count, b.count));
   };
   for (int i = 0; i < count; ++i) {
-    const auto& [first, second] = reaches_[at(i)];
+    const Reaches& mine = reaches_[at(i)];
     for (int k = i; k < count; ++k) {
-      const auto& [other, another] = reaches_[at(k)];
-      double response = together(first, other) + together(first, another);
-      if (second.tree >= 0) response += together(second, other) + together(second, another);
+      double response = 0;
+      for (const Reach& one : mine) {
+        if (one.tree < 0) break;
+        for (const Reach& other : reaches_[at(k)]) {
+          if (other.tree < 0) break;
+          response += together(one, other);
+        }
+      }
       box.response(i, k) = box.response(k, i) = response;
     }
   }
@@ -133,7 +148,7 @@ bool IslandDirect::extend_responses() {
     const KnownAxes& before = known_axes_[at(i)];
     if ((node.held & ~before.held) != 0 || node.conductance != before.conductance) return false;
     for (int k = 0; k < 6; ++k) {
-      if (((before.held & ~node.held) >> k & 1U) != 0) released_.push_back({{i, {}}, {}, k});
+      if (((before.held & ~node.held) >> k & 1U) != 0) released_.push_back({{i, {}}, {}, k, -1});
     }
   }
   const auto known = static_cast<int>(known_names_.size());
@@ -190,34 +205,32 @@ int IslandDirect::released_with(const OuterRow& row) const {
 }
 
 IslandDirect::Pull IslandDirect::pull_on(const OuterRow& row) {
-  return {row.a, row.b, row.axis != nullptr ? static_cast<int>(row.axis->axis) : -1};
+  return {row.a, row.b, row.axis != nullptr ? static_cast<int>(row.axis->axis) : -1, row.gear};
 }
 
 // Rates that a unit impulse gives the rows that are solved for, and the first of the axes that let go.
 void IslandDirect::answer(const Pull& to, std::span<double> rows, std::span<double> axes) {
   TreeSolver& trees = system_.trees;
-  const int first = tree_at(to.a.node);
-  const int second = tree_at(to.b.node);
+  std::array<int, 4> touched{-1, -1, -1, -1};
+  const auto touches = [&](int tree) { return std::find(touched.begin(), touched.end(), tree) != touched.end(); };
+  int count = 0;
+  for_each_side(to, [&](const Side& side) {
+    const int tree = tree_at(side.node);
+    if (!touches(tree)) touched[at(count++)] = tree;
+    if (to.axis < 0) trees.node(side.node).load += side.pull;
+  });
   if (to.axis >= 0) trees.node(to.a.node).ask[at(to.axis)] = 1;
-  for (const Side* side : {&to.a, &to.b}) {
-    if (to.axis < 0 && side->node >= 0) trees.node(side->node).load += side->pull;
-  }
-  for (const int tree : {first, second == first ? -1 : second}) {
-    if (tree >= 0) trees.respond(trees_[at(tree)].first, trees_[at(tree)].last);
-  }
+  for (int i = 0; i < count; ++i) trees.respond(trees_[at(touched[at(i)])].first, trees_[at(touched[at(i)])].last);
   if (to.axis >= 0) trees.node(to.a.node).ask[at(to.axis)] = 0;
-  for (const Side* side : {&to.a, &to.b}) {
-    if (side->node >= 0) trees.node(side->node).load = {};
-  }
+  for_each_side(to, [&](const Side& side) { trees.node(side.node).load = {}; });
   const auto rate = [&](const Pull& of) {
     double sum = 0;
-    for (const Side* side : {&of.a, &of.b}) {
-      const int tree = tree_at(side->node);
-      if (tree < 0 || (tree != first && tree != second)) continue;
-      const TreeNode& n = trees.node(side->node);
-      if (of.axis < 0) sum += dot(side->pull, n.change);
+    for_each_side(of, [&](const Side& side) {
+      if (!touches(tree_at(side.node))) return;
+      const TreeNode& n = trees.node(side.node);
+      if (of.axis < 0) sum += dot(side.pull, n.change);
       if (of.axis >= 0 && (n.held >> of.axis & 1U) == 0) sum += n.rate[at(of.axis)];
-    }
+    });
     return sum;
   };
   for (std::size_t i = 0; i < rows.size(); ++i) rows[i] = rate(pull_on(outer_[at(boxed_[i])]));

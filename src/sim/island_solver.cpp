@@ -42,29 +42,51 @@ void IslandSolver::convertJoints(btTypedConstraint** constraints, int count, con
   if (direct_here_) {
     m_tmpSolverNonContactConstraintPool.resizeNoInitialize(0);
     joints_.resizeNoInitialize(0);
+    gears_swept_ = false;
     return;
   }
   for (int i = 0; i < count; ++i) {
     if (constraints[i]->getConstraintType() != JointConstraint::kType || !constraints[i]->isEnabled()) continue;
     plan(*static_cast<JointConstraint*>(constraints[i]), info);
   }
+  plan_gears(constraints, count, info);
   convert_all(constraints, count, info);
 }
 
 // False: nothing to solve directly, or joints of Bullet's own, which only the sweeps know.
 bool IslandSolver::plan_direct(btTypedConstraint** constraints, int count, const btContactSolverInfo& info) {
   for (int i = 0; i < count; ++i) {
-    if (constraints[i]->getConstraintType() != JointConstraint::kType) return false;
+    if (constraints[i]->getConstraintType() != JointConstraint::kType && !is_gear(*constraints[i])) return false;
   }
   direct_.start();
   for (int i = 0; i < count; ++i) {
+    if (is_gear(*constraints[i])) continue;
     JointConstraint& joint = static_cast<JointConstraint&>(*constraints[i]);
     if (!joint.isEnabled()) continue;
     plan(joint, info);
     direct_.add_joint(joint, getOrInitSolverBody(joint.getRigidBodyA(), info.m_timeStep),
                       getOrInitSolverBody(joint.getRigidBodyB(), info.m_timeStep));
   }
+  plan_gears(constraints, count, info);
+  for (const GearRow& row : gears_) direct_.add_gear(*row.gear, row.bodies);
   return direct_.joint_count() > 0 || contacts_direct_;
+}
+
+// Once all joints are planned. A gear that moves nothing has no row.
+void IslandSolver::plan_gears(btTypedConstraint** constraints, int count, const btContactSolverInfo& info) {
+  gears_.clear();
+  for (int i = 0; i < count; ++i) {
+    if (!is_gear(*constraints[i]) || !constraints[i]->isEnabled()) continue;
+    auto& gear = static_cast<GearConstraint&>(*constraints[i]);
+    gear.plan(info.m_timeStep);
+    if (!(gear.row().mobility > 0)) continue;
+    GearRow& row = gears_.emplace_back();
+    row.gear = &gear;
+    row.count = static_cast<int>(gear.sides().size());
+    for (std::size_t k = 0; k < gear.sides().size(); ++k) {
+      row.bodies[k] = getOrInitSolverBody(*gear.sides()[k].body, info.m_timeStep);
+    }
+  }
 }
 
 btScalar IslandSolver::solveGroupCacheFriendlyIterations(btCollisionObject** bodies, int body_count,
@@ -125,6 +147,57 @@ void IslandSolver::convert_all(btTypedConstraint** constraints, int count, const
       convertJoint(first, constraints[i], size, a, b, info);
       add_rows(first, size.m_numConstraintRows, false, 0);
     }
+  }
+  convert_gears(info);
+}
+
+// Rows of gears for the sweeps, after those of all joints.
+void IslandSolver::convert_gears(const btContactSolverInfo& info) {
+  gears_swept_ = true;
+  for (GearRow& row : gears_) {
+    const GearConstraint::Row& planned = row.gear->row();
+    btScalar rate = 0;
+    for (int k = 0; k < row.count; ++k) {
+      GearSide& side = row.sides[at(k)];
+      const GearConstraint::Side& from = row.gear->sides()[at(k)];
+      const btSolverBody& body = m_tmpSolverBodyPool[row.bodies[at(k)]];
+      side.linear = from.linear;
+      side.angular = from.angular;
+      side.linear_per_impulse = from.linear * from.body->getInvMass() * from.body->getLinearFactor();
+      side.angular_per_impulse = from.body->getInvInertiaTensorWorld() * from.angular * from.body->getAngularFactor();
+      rate += side.linear.dot(body.m_linearVelocity + body.m_externalForceImpulse) +
+              side.angular.dot(body.m_angularVelocity + body.m_externalTorqueImpulse);
+    }
+    row.wanted = to_scalar(planned.velocity) - rate;
+    row.softness = to_scalar(planned.softness);
+    row.step = to_scalar(1 / (planned.mobility + planned.softness));
+    row.bound = to_scalar(std::min(planned.bound, static_cast<double>(SIMD_INFINITY)));
+    row.impulse = std::clamp(to_scalar(row.gear->warm_impulse()), -row.bound, row.bound);
+    push_gear(row, row.impulse);
+    m_maxOverrideNumSolverIterations = std::max(info.m_numIterations, m_maxOverrideNumSolverIterations);
+  }
+}
+
+// Returns the squared change of the impulse.
+btScalar IslandSolver::sweep_gear(int gear) {
+  GearRow& row = gears_[at(gear)];
+  btScalar missing = row.wanted - row.softness * row.impulse;
+  for (int k = 0; k < row.count; ++k) {
+    const GearSide& side = row.sides[at(k)];
+    const btSolverBody& body = m_tmpSolverBodyPool[row.bodies[at(k)]];
+    missing -= side.linear.dot(body.m_deltaLinearVelocity) + side.angular.dot(body.m_deltaAngularVelocity);
+  }
+  const btScalar after = std::clamp(row.impulse + missing * row.step, -row.bound, row.bound);
+  const btScalar change = after - std::exchange(row.impulse, after);
+  push_gear(row, change);
+  return change * change;
+}
+
+void IslandSolver::push_gear(const GearRow& row, btScalar impulse) {
+  for (int k = 0; k < row.count; ++k) {
+    btSolverBody& body = m_tmpSolverBodyPool[row.bodies[at(k)]];
+    body.m_deltaLinearVelocity += row.sides[at(k)].linear_per_impulse * impulse;
+    body.m_deltaAngularVelocity += row.sides[at(k)].angular_per_impulse * impulse;
   }
 }
 
@@ -196,10 +269,11 @@ void IslandSolver::convert_rows(JointConstraint& joint, btSolverConstraint* rows
   if (info.m_numIterations > m_maxOverrideNumSolverIterations) m_maxOverrideNumSolverIterations = info.m_numIterations;
 }
 
-// One sweep over all joints: their rows one by one, then their blocks. Returns the largest squared change of an
-// impulse, 0 when nothing moved.
+// One sweep over gears, which give way to locks, then over all joints: their rows one by one, then their blocks.
+// Returns the largest squared change of an impulse, 0 when nothing moved.
 btScalar IslandSolver::sweep_joints() {
   btScalar largest = 0;
+  for (int i = 0; i < static_cast<int>(gears_.size()); ++i) largest = std::max(largest, sweep_gear(i));
   for (int i = 0; i < joints_.size(); ++i) {
     JointRows& joint = joints_[i];
     btSolverBody& a = m_tmpSolverBodyPool[joint.body_a];
@@ -225,6 +299,10 @@ btScalar IslandSolver::solveGroupCacheFriendlyFinish(btCollisionObject** bodies,
                                                      const btContactSolverInfo& info) {
   remember_rolling_friction();
   for (int i = 0; i < joints_.size(); ++i) joints_[i].block.finish();
+  for (GearRow& row : gears_) {
+    if (gears_swept_) row.gear->take_impulse(static_cast<double>(row.impulse));
+  }
+  gears_.clear();
   const int count = m_tmpSolverNonContactConstraintPool.size();
   for (int first = 0, last = 0; first < count; first = last) {
     auto* joint = static_cast<btTypedConstraint*>(m_tmpSolverNonContactConstraintPool[first].m_originalContactPoint);

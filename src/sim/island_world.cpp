@@ -40,6 +40,7 @@ void leave_gyroscopic_torque_to_us(btRigidBody& body) {
 
 void end_tick(btTypedConstraint& joint) {
   if (joint.getConstraintType() == JointConstraint::kType) static_cast<JointConstraint&>(joint).end_tick();
+  if (is_gear(joint)) static_cast<GearConstraint&>(joint).end_tick();
 }
 
 }  // namespace

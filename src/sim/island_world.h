@@ -12,6 +12,7 @@
 #include "sim/bullet_memory.h"
 #include "sim/collision_filter.h"
 #include "sim/contact_sweep.h"
+#include "sim/gear_constraint.h"
 #include "sim/island_direct.h"
 #include "sim/joint_block.h"
 #include "sim/joint_constraint.h"
@@ -70,9 +71,12 @@ class IslandSolver : public btSequentialImpulseConstraintSolver {
   void convert_all(btTypedConstraint** constraints, int count, const btContactSolverInfo& info);
   void convert_rows(JointConstraint& joint, btSolverConstraint* rows, int count, const btContactSolverInfo& info);
   JointBlock& add_rows(const btSolverConstraint* rows, int count, bool bounded, int locked);
+  void plan_gears(btTypedConstraint** constraints, int count, const btContactSolverInfo& info);
+  void convert_gears(const btContactSolverInfo& info);
   btScalar sweep_joints();
   void convert_contact(btPersistentManifold& manifold, const btContactSolverInfo& info);
   void convert_rolling(btManifoldPoint& point, int contact, int id_a, int id_b, btScalar pressing);
+  btScalar sweep_gear(int gear);
   btScalar sweep_rolling();
   void remember_rolling_friction();
 
@@ -83,6 +87,25 @@ class IslandSolver : public btSequentialImpulseConstraintSolver {
     int body_b;
     JointBlock block;
   };
+  struct GearSide {  // a body's part of the row's rate, and its change of velocity per impulse
+    btVector3 linear, angular;
+    btVector3 linear_per_impulse, angular_per_impulse;
+  };
+  struct GearRow {
+    GearConstraint* gear;
+    std::array<int, 4> bodies;
+    std::array<GearSide, 4> sides;
+    int count;
+    btScalar wanted;  // rate that is missing without impulses of this step
+    btScalar softness;
+    btScalar step;  // impulse per missing rate
+    btScalar bound;
+    btScalar impulse;
+  };
+  void push_gear(const GearRow& row, btScalar impulse);
+
+  std::vector<GearRow> gears_;  // of the island at hand
+  bool gears_swept_ = false;
   std::vector<JointConstraint::Row> planned_;  // of the joints at hand, those of one behind those of another
   std::size_t planned_count_ = 0;
   btAlignedObjectArray<JointRows> joints_;

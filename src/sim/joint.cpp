@@ -142,7 +142,19 @@ void Joint::enter() {
   body_.world().bullet().addConstraint(constraint_.get());
 }
 
+void Joint::couple_to(Joint& leader) {
+  const BulletMemory::Scope scope(&body_.world().bullet_memory());
+  mimic_gear_ = std::make_unique<GearConstraint>(*leader.constraint_, leader.own_axis(), *constraint_, own_axis());
+  mimic_gear_->set({spec_.mimic->multiplier, spec_.mimic->offset, 0});
+}
+
+void Joint::enter_mimic_gear() {
+  if (mimic_gear_ == nullptr || std::exchange(gear_in_world_, true)) return;
+  body_.world().bullet().addConstraint(mimic_gear_.get(), false);
+}
+
 void Joint::leave() {
+  if (std::exchange(gear_in_world_, false)) body_.world().bullet().removeConstraint(mimic_gear_.get());
   if (std::exchange(in_world_, false)) body_.world().bullet().removeConstraint(constraint_.get());
 }
 
@@ -189,6 +201,7 @@ void Joint::read_anew() {
   // told ones, since the constraint's may be no numbers after a blow-up
   const double* told = body_.store().live_block(id_) + joint_live_rows().angles->offset;
   constraint_->reset({told[0], told[1], told[2]});
+  if (mimic_gear_ != nullptr) mimic_gear_->reset();
   tell();
 }
 

@@ -7,6 +7,7 @@
 #include <string>
 
 #include "params/store.h"
+#include "sim/gear_constraint.h"
 #include "sim/joint_constraint.h"
 #include "sim/part.h"
 
@@ -14,7 +15,7 @@ namespace limber {
 
 class Motor;
 
-/// Drives a follower's servo: its target is multiplier · (leader's value) + offset.
+/// Couples a follower to its leader, with reaction: value = multiplier · (leader's value) + offset.
 struct Mimic {
   std::string leader;
   double multiplier = 1;
@@ -69,11 +70,18 @@ class Joint {
   void take_start();
   void take_start(const Joint& other) { start_angles_ = other.constraint_->angles(); }
   void go_to_start();
-  /// Into Bullet's world and out of it; the body says when.
+  /// Into Bullet's world and out of it, with the gear to its leader; the body says when.
   void enter();
   void leave();
   /// Its parts are awake from the next step on. [any thread]
   void wake();
+  bool in_world() const { return in_world_; }
+  /// Couples this joint to its leader, as the spec's mimic says.
+  void couple_to(Joint& leader);
+  /// After both joints have entered.
+  void enter_mimic_gear();
+  /// The gear between this joint and its leader; null: it follows none.
+  GearConstraint* mimic_gear() const { return mimic_gear_.get(); }
   /// Limits, ERP and CFM of all axes into the constraint: the effect of their rows.
   void effect_limits();
   void read_axis(double* out) const;
@@ -91,6 +99,8 @@ class Joint {
   Part& parent_;
   Part& child_;
   std::unique_ptr<JointConstraint> constraint_;
+  std::unique_ptr<GearConstraint> mimic_gear_;
+  bool gear_in_world_ = false;
   JointSpec spec_;
   Vec3 start_angles_{0};
 };

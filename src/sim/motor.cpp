@@ -205,15 +205,6 @@ void Motor::hold_here() {
   constraint_.restart_goals();
 }
 
-void Motor::follow() {
-  if (!joint_.spec().mimic) return;
-  const Mimic& mimic = *joint_.spec().mimic;
-  if (leader_ == nullptr) leader_ = joint_.body().find_joint(mimic.leader);
-  if (leader_ == nullptr) return;
-  set_target(mimic.multiplier * leader_->value() + mimic.offset);
-  (void)set_goals();  // the leader's motion keeps both awake
-}
-
 void Motor::effect_axes() {
   const Store& store = joint_.body().store();
   const double* kept = store.kept_block(id_);

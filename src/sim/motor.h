@@ -38,8 +38,6 @@ class Motor {
 
   /// Where the joint is now is what a panic that holds motors holds.
   void hold_here();
-  /// Before Bullet steps: a follower's target from its leader.
-  void follow();
   /// A spring of it was held below its stiffness: said once, with the cure.
   void say_cap();
   /// Warns once that the target of a servo is outside the joint's limits.
@@ -73,7 +71,6 @@ class Motor {
   Joint& joint_;
   JointConstraint& constraint_;  // the joint's
   NodeId id_;
-  const Joint* leader_ = nullptr;  // of a follower, once it was looked for
   std::array<double, 6> hold_{};
   bool said_contradiction_ = false;
   bool said_cap_ = false;

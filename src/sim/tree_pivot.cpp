@@ -261,6 +261,16 @@ int TreeRows::give_up_remembered(int first, int last) {
   return given_up;
 }
 
+int TreeRows::give_up_axis(int node, int axis) {
+  int given_up = 0;
+  for (Stair& s : stairs(node, node + 1)) {
+    if (s.axis != axis || s.outer) continue;
+    give_up(s);
+    given_up++;
+  }
+  return given_up;
+}
+
 int TreeRows::give_up_all(int first, int last) {
   int given_up = 0;
   for (Stair& s : stairs(first, last)) {

@@ -77,6 +77,8 @@ class TreeRows {
   int give_up_broken(int first, int last);
   /// Those that contacts brought elsewhere in the step before: likely they will again.
   int give_up_remembered(int first, int last);
+  /// The bounded hard rows of one axis; 0 when it has none, or they were given up before.
+  int give_up_axis(int node, int axis);
   /// All bounded rows that are in force, whether their law is broken or not.
   int give_up_all(int first, int last);
   /// Remembers impulses, rates and changes; goes back to them, rows that were given up since stay so.

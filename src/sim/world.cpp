@@ -92,6 +92,7 @@ World::World(Store& store, const WorldSetup& setup) : store_(store), team_(setup
   const NodeId physics = store_.add_group(store_.root(), "physics");
   id_ = store_.add(table(), physics, "sim", this);
   body_group_ = store_.add_group(physics, "body");
+  gear_group_ = store_.add_group(physics, "gear");
   behaviors_ = std::make_unique<BehaviorList>(*this, physics);
   visuals_ = std::make_unique<Visuals>(store_);
   shape_group_ = store_.add_group(visuals_->id(), "shape");
@@ -103,6 +104,7 @@ World::~World() { clear(); }
 void World::clear() {
   panic_.end();
   behaviors_->clear();
+  gears_.clear();
   bodies_.clear();
   shapes_.clear();
   geometries_.clear();
@@ -155,6 +157,10 @@ Result<Body*> World::copy_body(const Body& source, std::string name) {
 void World::remove_body(Body& body) {
   const auto at = std::ranges::find_if(bodies_, [&](const std::unique_ptr<Body>& b) { return b.get() == &body; });
   if (at == bodies_.end()) return;
+  for (std::size_t i = gears_.size(); i-- > 0;) {
+    if (gears_[i]->couples(body)) remove_gear(*gears_[i]);
+  }
+  gears_changed();  // its mimic relations no longer count
   if (undo_.active()) undo_.hide(std::move(*at), static_cast<std::size_t>(at - bodies_.begin()));
   bodies_.erase(at);
 }
@@ -224,8 +230,12 @@ void World::settle() {
   store_.apply_marks(team_.get());
   for (const auto& body : bodies_) {
     body->enter();
-    body->settle_joints();
+    if (!body->settle_joints()) continue;
+    for (const auto& gear : gears_) {
+      if (gear->couples(*body)) gear->constraint().reset();
+    }
   }
+  settle_gears();
 }
 
 void World::step() {
@@ -237,7 +247,6 @@ void World::step() {
   for (const auto& body : bodies_) {
     if (std::exchange(body->fresh_, false)) body->take_start_pose();
     if (body->has_unchecked_parts()) body->find_overlaps();
-    if (body->in_world() && !panic_.on()) body->follow_leaders();
   }
   log_overlaps();
   if (panic_.on()) loads_.drop();
@@ -293,11 +302,27 @@ void World::tell_bodies() {
     }
   };
   share_out_places(team_.get(), static_cast<int>(awake_bodies_.size()), tell, kBodies);
-  for (Body* const body : awake_bodies_) body->say_caps();
+  for (Body* const body : awake_bodies_) {
+    body->say_caps();
+    body->report_slips();
+  }
+  report_slips();
   if (known) return;
   std::erase_if(awake_bodies_, [](const Body* body) { return body->asleep(); });
   awake_version_ = bullet_->sleep().version();
   awake_structure_ = store_.structure_version();
+}
+
+// Of the world's own gears.
+void World::report_slips() {
+  for (const auto& gear : gears_) {
+    GearConstraint& constraint = gear->constraint();
+    if (!constraint.slips() || !constraint.report_slip()) continue;
+    log_warning(
+        "gear '{}': joint '{}/{}' is {:.3g} away from its position by the gear: limits, locks or contacts hold it. "
+        "Widen the limits, or set max_force for a gear that slips",
+        gear->name(), gear->joint_b().body().name(), gear->joint_b().name(), std::abs(constraint.error()));
+  }
 }
 
 void World::after_internal_step(btDynamicsWorld* bullet, btScalar h) {
@@ -365,6 +390,7 @@ std::uint64_t World::state_hash() const {
   };
   for (const NodeId id : {id_, visuals_->id(), visuals_->camera().id(), visuals_->look().id()}) add_kept(id);
   for (const auto& shape : shapes_) add_kept(shape->id());
+  for (const auto& gear : gears_) add_kept(gear->id());
   numbers.add(time(), static_cast<double>(tick_), static_cast<double>(seed()));
   std::uint64_t hash = numbers.value();
   for (const auto& body : bodies_) hash = body->state_hash(hash);

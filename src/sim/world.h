@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <unordered_map>
@@ -14,6 +15,7 @@
 #include "sim/body.h"
 #include "sim/camera_moves.h"
 #include "sim/contacts.h"
+#include "sim/gear.h"
 #include "sim/island_world.h"
 #include "sim/motion_hash.h"
 #include "sim/overlay.h"
@@ -59,6 +61,18 @@ class World {
   Body* find_body(std::string_view name) const;
   std::span<const std::unique_ptr<Body>> bodies() const { return bodies_; }
   std::vector<std::string_view> body_names() const;
+
+  /// Couples the own axes of two joints: position_b = ratio·position_a + offset; without an offset, as they are now.
+  /// Errors: a taken or unprintable name, joints without a single axis, a ratio of 0.
+  Result<Gear*> add_gear(std::string name, Joint& joint_a, Joint& joint_b, double ratio,
+                         std::optional<double> offset = {});
+  /// In a guarded call it is out of sight at once. Removing a body removes the gears of its joints.
+  void remove_gear(Gear& gear);
+  Gear* find_gear(std::string_view name) const;
+  std::span<const std::unique_ptr<Gear>> gears() const { return gears_; }
+  void order_gears(const std::vector<Gear*>& first);
+  /// Which gears are redundant is determined again before the next step.
+  void gears_changed() { gears_changed_ = true; }
 
   Result<Shape*> add_shape(std::string name, ShapeModel model);
   Shape* find_shape(std::string_view name) const;
@@ -140,6 +154,8 @@ class World {
   void effect_panic_motors() { panic_.renew(); }
   void settle_healed();
   void tell_solved(const DirectCounts& before);
+  void settle_gears();
+  void report_slips();
   void tell_bodies();
   void report_overlap(const Body& body, const Part& a, const Part& b, double depth);
   void log_overlaps();
@@ -152,13 +168,14 @@ class World {
 
   Store& store_;
   std::shared_ptr<Team> team_;  // shares out a step, or null
-  NodeId id_, body_group_, shape_group_;
+  NodeId id_, body_group_, gear_group_, shape_group_;
   BulletMemory bullet_memory_;
   std::unique_ptr<IslandWorld> bullet_;
   PartLoads loads_;
   PartSolids solids_;
   std::vector<std::unique_ptr<Shape>> shapes_;
   std::vector<std::unique_ptr<Body>> bodies_;
+  std::vector<std::unique_ptr<Gear>> gears_;  // go before the bodies
   std::unique_ptr<BehaviorList> behaviors_;
   std::unique_ptr<Visuals> visuals_;
   CameraMoves camera_moves_{*this};
@@ -180,6 +197,7 @@ class World {
   bool healed_ = false;                // a body, in this tick
   std::size_t overlaps_reported_ = 0;  // since log_overlaps()
   std::string overlap_text_;           // the first of them
+  bool gears_changed_ = false;
   // Bodies that are not asleep, as found at these versions of the sleep tracker and the store; 0: not yet.
   std::vector<Body*> awake_bodies_;
   std::uint64_t awake_version_ = 0;

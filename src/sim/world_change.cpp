@@ -39,6 +39,21 @@ void World::stand() {
 
 Body& World::rebuild_body(Body& body, const Body& described, const std::vector<bool>& joints_start_anew) {
   const Posture posture(body);
+  // gears of its joints stay, where the new body has joints of these names
+  struct Coupling {
+    std::unique_ptr<Gear> gear;
+    std::size_t place;
+    std::string of_a, of_b;  // joints of the body
+  };
+  std::vector<Coupling> couplings;
+  for (std::size_t i = gears_.size(); i-- > 0;) {
+    Gear& gear = *gears_[i];
+    if (!gear.couples(body)) continue;
+    gear.leave();
+    const auto own = [&](const Joint& joint) { return &joint.body() == &body ? joint.name() : std::string(); };
+    couplings.push_back({std::move(gears_[i]), i, own(gear.joint_a()), own(gear.joint_b())});
+    gears_.erase(gears_.begin() + static_cast<std::ptrdiff_t>(i));
+  }
   remove_body(body);
   const Result<Body*> made = copy_body(described, described.name());
   LIMBER_CHECK(made.ok());
@@ -47,6 +62,15 @@ Body& World::rebuild_body(Body& body, const Body& described, const std::vector<b
   fresh.fresh_ = false;
   if (fresh.has_unchecked_parts()) fresh.find_overlaps();  // where they are described, not where they moved to
   posture.give_to(fresh, joints_start_anew);
+  for (auto coupling = couplings.rbegin(); coupling != couplings.rend(); ++coupling) {
+    Gear& gear = *coupling->gear;
+    Joint* const a = coupling->of_a.empty() ? &gear.joint_a() : fresh.find_joint(coupling->of_a);
+    Joint* const b = coupling->of_b.empty() ? &gear.joint_b() : fresh.find_joint(coupling->of_b);
+    if (a == nullptr || b == nullptr || !check_gear_joint(*a) || !check_gear_joint(*b)) continue;
+    gear.attach(*a, *b);
+    const std::size_t place = std::min(coupling->place, gears_.size());
+    gears_.insert(gears_.begin() + static_cast<std::ptrdiff_t>(place), std::move(coupling->gear));
+  }
   return fresh;
 }
 
@@ -70,6 +94,8 @@ NodeId World::same_shape(const World& other, NodeId shape) const {
   const Shape* const found = find_shape(other.store_.name(shape));
   return found == nullptr ? NodeId{} : found->id();
 }
+
+void World::order_gears(const std::vector<Gear*>& first) { order(store_, gear_group_, gears_, first); }
 
 void World::order_bodies(const std::vector<Body*>& first) { order(store_, body_group_, bodies_, first); }
 

@@ -45,11 +45,12 @@ void WorldKey::release(PageStore& pages) {
 
 void WorldKey::pass(KeyBytes& key, World& world) {
   key.pass_all(world.tick_, world.health_events_, world.reset_asked_, world.healed_, world.panic_.on_,
-               world.panic_.began_, world.panic_asked_);
+               world.panic_.began_, world.panic_asked_, world.gears_changed_);
   pass(key, world.store());
   key.pass_all(world.contacts_.reporting_, world.contacts_.pairs_, world.contacts_.begun_, world.camera_moves_.state_);
   pass_loads(key, world);
   for (const auto& body : world.bodies_) pass(key, *body);
+  for (const auto& gear : world.gears_) key.pass_all(gear->in_world_, gear->redundant_);
   pass(key, *world.behaviors_);
 }
 
@@ -80,7 +81,9 @@ void WorldKey::pass(KeyBytes& key, Body& body) {
   key.pass_all(body.pairs_.list, body.pairs_.checked, body.reported_static_velocity_);
   key.pass_all(body.last_good_, body.good_poses_, body.restored_once_, body.broken_);
   for (const auto& part : body.parts_) key.pass_all(part->start_, part->reports_);
-  for (const auto& joint : body.joints_) key.pass_all(joint->open_, joint->in_world_, joint->start_angles_);
+  for (const auto& joint : body.joints_) {
+    key.pass_all(joint->open_, joint->in_world_, joint->gear_in_world_, joint->start_angles_);
+  }
   for (const auto& motor : body.motors_)
     key.pass_all(motor->said_contradiction_, motor->said_cap_, motor->warned_outside_, motor->hold_);
 }

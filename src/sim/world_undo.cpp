@@ -35,6 +35,13 @@ struct WorldUndo::Hidden {
   std::size_t place_in_tree;  // among its node's siblings
 };
 
+struct WorldUndo::HiddenGear {
+  std::unique_ptr<Gear> gear;
+  NodeId id;
+  std::size_t place;          // among the gears
+  std::size_t place_in_tree;  // among its node's siblings
+};
+
 WorldUndo::WorldUndo(World& world) : world_(world) {}
 
 WorldUndo::~WorldUndo() = default;
@@ -57,6 +64,11 @@ void WorldUndo::end() {
   active_ = false;
   world_.store_.end_undo();
   world_.behaviors_->undo().end();
+  for (HiddenGear& hidden : hidden_gears_) {
+    hidden.gear.reset();
+    world_.store_.drop_hidden(hidden.id);
+  }
+  hidden_gears_.clear();
   for (Hidden& hidden : hidden_) {
     hidden.body.reset();
     world_.store_.drop_hidden(hidden.id);
@@ -151,6 +163,10 @@ void WorldUndo::made_body() {
   note([](void* world, std::size_t) { static_cast<World*>(world)->bodies_.pop_back(); }, &world_);
 }
 
+void WorldUndo::made_gear() {
+  note([](void* world, std::size_t) { static_cast<World*>(world)->gears_.pop_back(); }, &world_);
+}
+
 void WorldUndo::made_shape() {
   note([](void* world, std::size_t) { static_cast<World*>(world)->shapes_.pop_back(); }, &world_);
 }
@@ -179,11 +195,25 @@ void WorldUndo::made_motor(Body& body) {
   note(
       [](void* owner, std::size_t) {
         auto& body = *static_cast<Body*>(owner);
-        std::erase(body.followers_, body.motors_.back().get());
         body.motors_.pop_back();
         body.structure_++;
       },
       &body);
+}
+
+void WorldUndo::hide(std::unique_ptr<Gear> gear, std::size_t place) {
+  const NodeId id = gear->id();
+  hidden_gears_.push_back({std::move(gear), id, place, world_.store_.hide(id)});
+  note(
+      [](void* owner, std::size_t) {
+        auto& undo = *static_cast<WorldUndo*>(owner);
+        HiddenGear& last = undo.hidden_gears_.back();
+        undo.world_.store_.show(last.id, last.place_in_tree);
+        auto& gears = undo.world_.gears_;
+        gears.insert(gears.begin() + static_cast<std::ptrdiff_t>(last.place), std::move(last.gear));
+        undo.hidden_gears_.pop_back();
+      },
+      this);
 }
 
 void WorldUndo::hide(std::unique_ptr<Body> body, std::size_t place) {

@@ -13,6 +13,7 @@
 namespace limber {
 
 class Body;
+class Gear;
 class Part;
 class Shape;
 class World;
@@ -45,12 +46,14 @@ class WorldUndo {
   void keep_motion(Part& part);
   // the newest of its list was made
   void made_body();
+  void made_gear();
   void made_shape();
   void made_part(Body& body);
   void made_joint(Body& body);
   void made_motor(Body& body);
   /// Takes a removed body, which stood at `place`, out of sight.
   void hide(std::unique_ptr<Body> body, std::size_t place);
+  void hide(std::unique_ptr<Gear> gear, std::size_t place);
 
   /// For what other rooms make and change: on failure `step` is called, newest first among all that is taken back.
   using Step = void (*)(void* owner, std::size_t value);
@@ -66,6 +69,7 @@ class WorldUndo {
   struct BodyState;
   struct Motion;
   struct Hidden;
+  struct HiddenGear;
   bool first_time(std::uint64_t& kept_in) const;
 
   World& world_;
@@ -79,6 +83,7 @@ class WorldUndo {
   CameraMoves::State moves_;
   std::vector<Motion> motions_;
   std::vector<Hidden> hidden_;
+  std::vector<HiddenGear> hidden_gears_;  // go before the bodies
 };
 
 }  // namespace limber

@@ -49,6 +49,20 @@ TEST(Inspect, JsonHasEveryLinkAndJointOfTheFile) {
   EXPECT_NEAR(mark.at("start").at("position").at(2).get<double>(), 1 - std::sin(0.5), 1e-12);
 }
 
+TEST(Inspect, ListsMimicRelations) {
+  MeshLibrary meshes;
+  const auto imported = import_urdf_text(R"(<robot name="jaw"><link name="post"/><link name="a"/><link name="b"/>
+<joint name="lead" type="continuous"><parent link="post"/><child link="a"/><axis xyz="0 0 1"/></joint>
+<joint name="follow" type="continuous"><parent link="post"/><child link="b"/><axis xyz="0 0 1"/><mimic joint="lead" multiplier="-2" offset="0.5"/></joint></robot>)",
+                                         "jaw.urdf", {}, meshes);
+  ASSERT_TRUE(imported);
+  const json joints = json::parse(inspect_json(**imported))["joints"];
+  EXPECT_FALSE(joints.at(0).contains("mimic"));
+  EXPECT_EQ(joints.at(1).at("mimic"), json({{"joint", "lead"}, {"multiplier", -2.0}, {"offset", 0.5}}));
+  const std::string table = inspect_table(**imported);
+  EXPECT_NE(table.find("\nmimic\n  follow = -2 * lead + 0.5\n"), std::string::npos) << table;
+}
+
 TEST(Inspect, JsonLimitsAreNullWhenFree) {
   BodyModel m = model();
   json j = json::parse(inspect_json(m))["joints"][0];

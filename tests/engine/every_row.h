@@ -38,6 +38,7 @@ inline std::vector<Sample> samples(const Store& store) {
        "/physics/group/swarm",
        {},
        "sim:group_behavior('swarm')"},
+      {&Gear::table(), "/physics/gear/rack", {}, "sim:gear('rack')"},
       {&store.table(find_place(store, "/scene").value().node), "/scene", {}, "params"},
   };
 }

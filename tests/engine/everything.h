@@ -15,6 +15,7 @@ for i, kind in ipairs { "revolute", "prismatic", "spherical", "planar", "floatin
     { type = kind, position = vec3(0.3 * i, 0, 1) })
   body:add_motor(joint)
 end
+sim:add_gear(body:joint("revolute"), body:joint("prismatic"), 0.1, { name = "rack" })
 body:add_part("hat", shape, { position = vec3(2, 0, 1) })
 body:add_joint("weld", "part_floating", "hat", { type = "fixed" })
 body:add_behavior("random_force", "wind", { parts = "hat" })

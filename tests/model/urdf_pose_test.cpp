@@ -76,6 +76,46 @@ TEST(UrdfPose, MimicChainsAreResolvedToTheirLeader) {
   // i starts at its lower limit 0.2
   EXPECT_DOUBLE_EQ(m.joints[1].start, 0.5);
   EXPECT_DOUBLE_EQ(m.joints[2].start, 0.05);
+  EXPECT_TRUE(
+      says(m, Severity::note, "joint 'k': follows 'j', which follows another joint; it follows 'i' * -1 + 0.25", 4))
+      << test::all_problems(m);
+}
+
+TEST(UrdfPose, AFollowerWhoseLimitsStopItsLeaderIsReported) {
+  struct Case {
+    const char *mimic, *text;
+  };
+  // i: 0.2 .. 1, k and j: -2 .. 2
+  const Case cases[] = {
+      {R"(<mimic joint="i" multiplier="-1"/>)", nullptr},
+      {R"(<mimic joint="i" multiplier="2"/>)", nullptr},
+      {R"(<mimic joint="i" multiplier="4"/>)",
+       "joint 'j' follows 'i' * 4: its limits -2..2 are reached when 'i' is at 0.5 (range of 'i': 0.2..1)"},
+      {R"(<mimic joint="i" multiplier="-4" offset="2.4"/>)", nullptr},
+      {R"(<mimic joint="i" multiplier="-8" offset="4"/>)",
+       "joint 'j' follows 'i' * -8 + 4: its limits -2..2 are reached when 'i' is at 0.75 and at 0.25"},
+      {R"(<mimic joint="i" multiplier="0" offset="3"/>)",
+       "joint 'j' follows 'i' * 0 + 3: its limits -2..2 are reached when 'i' is anywhere"}};
+  for (const Case& c : cases) {
+    const BodyModel m = import_text(finger(c.mimic, ""));
+    EXPECT_EQ(m.joints[1].mimic, 0) << c.mimic;
+    const bool reported = test::all_problems(m).find("are reached when") != std::string::npos;
+    EXPECT_EQ(reported, c.text != nullptr) << c.mimic << test::all_problems(m);
+    EXPECT_TRUE(c.text == nullptr || says(m, Severity::warning, c.text, 3)) << test::all_problems(m);
+  }
+}
+
+TEST(UrdfPose, AMimicOfAJointThatCannotFollowIsReported) {
+  for (const char* type : {"fixed", "planar", "floating"}) {
+    const BodyModel m = import_text(fmt::format(
+        R"(<robot name="r"><link name="a"/><link name="b"/><link name="c"/>
+<joint name="i" type="continuous"><parent link="a"/><child link="b"/><axis xyz="0 0 1"/></joint>
+<joint name="j" type="{}"><parent link="b"/><child link="c"/><axis xyz="0 0 1"/><mimic joint="i"/></joint></robot>)",
+        type));
+    for (const JointModel& joint : m.joints) EXPECT_EQ(joint.mimic, -1) << type;
+    EXPECT_TRUE(says(m, Severity::error, fmt::format("joint 'j': is {} and can't follow 'i'", type), 3))
+        << test::all_problems(m);
+  }
 }
 
 TEST(UrdfPose, MimicsThatCannotBeAreDropped) {

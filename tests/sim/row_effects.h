@@ -1,4 +1,4 @@
-// The register of what each row does: one measuring function a row of World, Body, Part, Joint and Motor.
+// The register of what each row does: one measuring function a row of World, Body, Part, Joint, Motor and Gear.
 #pragma once
 
 #include <functional>
@@ -16,6 +16,7 @@ void add_body_effects(RowEffects& effects);
 void add_part_effects(RowEffects& effects);
 void add_joint_effects(RowEffects& effects);
 void add_motor_effects(RowEffects& effects);
+void add_gear_effects(RowEffects& effects);
 
 inline const RowEffects& row_effects() {
   static const RowEffects all = [] {
@@ -25,6 +26,7 @@ inline const RowEffects& row_effects() {
     add_part_effects(effects);
     add_joint_effects(effects);
     add_motor_effects(effects);
+    add_gear_effects(effects);
     return effects;
   }();
   return all;

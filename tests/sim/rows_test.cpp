@@ -19,9 +19,10 @@ struct NamedTable {
   const Table* table;
 };
 
-std::array<NamedTable, 5> tables() {
-  return {NamedTable{"World", &World::table()}, NamedTable{"Body", &Body::table()}, NamedTable{"Part", &Part::table()},
-          NamedTable{"Joint", &Joint::table()}, NamedTable{"Motor", &Motor::table()}};
+std::array<NamedTable, 6> tables() {
+  return {NamedTable{"World", &World::table()}, NamedTable{"Body", &Body::table()},
+          NamedTable{"Part", &Part::table()},   NamedTable{"Joint", &Joint::table()},
+          NamedTable{"Motor", &Motor::table()}, NamedTable{"Gear", &Gear::table()}};
 }
 
 TEST(Rows, EachHasAMeasuredEffect) {
@@ -53,7 +54,7 @@ std::string key_name(const testing::TestParamInfo<Key>& info) { return info.para
 
 INSTANTIATE_TEST_SUITE_P(Row, Effect, testing::ValuesIn(all_keys()), key_name);
 
-// One of everything: a floor, and a robot with a revolute and a floating joint.
+// One of everything: a floor, and a robot with two revolute joints, a gear between them, and a floating joint.
 struct Everything : Stage {
   Everything() {
     floor();
@@ -63,13 +64,16 @@ struct Everything : Stage {
     Part& kite = part(robot, box_model(Vec3(0.2)), 1, {{0, 0, 3}, quat_identity()});
     Joint& hinge = *robot.add_joint("hinge", base, arm, JointType::revolute, {0, 0, 1.5}, {0, 1, 0}).value();
     Joint& string = *robot.add_joint("string", arm, kite, JointType::floating, {0, 0, 2.5}, {0, 0, 1}).value();
+    Part& wing = part(robot, box_model(Vec3(0.2)), 1, {{0, 1, 1}, quat_identity()});
+    Joint& side = *robot.add_joint("side", base, wing, JointType::revolute, {0, 0.5, 1}, {1, 0, 0}).value();
     nodes = {world.id(),
              robot.id(),
              base.id(),
              hinge.id(),
              robot.add_motor(hinge).value()->id(),
              string.id(),
-             robot.add_motor(string).value()->id()};
+             robot.add_motor(string).value()->id(),
+             world.add_gear("gear", hinge, side, 2).value()->id()};
     world.settle();
   }
   std::vector<NodeId> nodes;

@@ -151,6 +151,22 @@ local motor_ = {}
 ---@class motor_opts
 ---@opts motor
 
+---Couples two joints both ways: position of b = ratio * position of a + offset. Made by sim:add_gear.
+---@class gear
+---@field name string # read-only.
+---@field alive boolean # read-only. Whether it still exists; it goes with its joints' bodies.
+---@field joint_a joint # read-only.
+---@field joint_b joint # read-only.
+---@rows gear
+local gear_ = {}
+
+---@action gear remove
+function gear_:remove() end
+
+---@class gear_opts
+---@field name? string # Left out: the names of both joints.
+---@opts gear
+
 ---What parts look like and touch with.
 ---@class shape
 ---@field name string # read-only.
@@ -188,6 +204,10 @@ function shape_:add_child(child, position, rotation) end
 ---@class joint_list
 ---@field [integer] joint
 ---@overload fun(self: body, wanted?: string|joint|(string|joint)[]): fun(): joint, integer
+
+---@class gear_list
+---@field [integer] gear
+---@overload fun(self: sim, wanted?: string|gear|(string|gear)[]): fun(): gear, integer
 
 ---@class motor_list
 ---@field [integer] motor

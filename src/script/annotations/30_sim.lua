@@ -5,6 +5,7 @@
 ---@field alive boolean # read-only. Always true.
 ---@field bodies body_list # read-only. In stream order; called, it walks those that a pattern matches.
 ---@field collision_groups string[] # Names of the 16 collision groups, in order of their bits; set at the top level.
+---@field gears gear_list # read-only. Made by add_gear, in stream order.
 ---@rows sim
 sim = {}
 
@@ -39,6 +40,19 @@ function sim:add_group_behavior(type, name, opts) end
 ---@param name string|behavior_group
 ---@return behavior_group
 function sim:group_behavior(name) end
+
+---Couples the own axes of two joints, of one body or of two, both ways: position of b = ratio * position of a + offset.
+---@param joint_a joint # Revolute, continuous or prismatic.
+---@param joint_b joint
+---@param ratio number # Travel of b per travel of a; not 0.
+---@param opts? gear_opts # `offset` left out: from the present positions.
+---@return gear
+function sim:add_gear(joint_a, joint_b, ratio, opts) end
+
+---A gear by its name or number (-1: the last).
+---@param key string|integer|gear
+---@return gear
+function sim:gear(key) end
 
 ---A body by its name or number (-1: the last). An error with the near names when there is none.
 ---@param key string|integer|body

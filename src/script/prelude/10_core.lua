@@ -17,6 +17,7 @@ ffi.cdef [[
   typedef struct visuals { const int32_t slot_, generation_; } visuals;
   typedef struct camera { const int32_t slot_, generation_; } camera;
   typedef struct look { const int32_t slot_, generation_; } look;
+  typedef struct gear { const int32_t slot_, generation_; } gear;
   typedef struct list { const int32_t slot_, generation_, kind_; } list;
   typedef struct link { const int32_t slot_, generation_, number_; } link;
   typedef struct timer { const int32_t number_; } timer;

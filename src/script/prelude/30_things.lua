@@ -11,7 +11,7 @@ function P.add_class(class) by_table[class.table], by_ctype[tonumber(class.ctype
 -- behaviours have a table each type: their classes are made when they are met (55_behaviors.lua)
 local function class_of_table(number) return by_table[number] or P.make_class(number) end
 P.class_of_table = class_of_table
-for i, name in ipairs { "sim", "body", "part", "joint", "motor", "shape", "visuals", "camera", "look" } do
+for i, name in ipairs { "sim", "body", "part", "joint", "motor", "shape", "visuals", "camera", "look", "gear" } do
   local class = { name = name, ctype = ffi.typeof(name), getters = {}, setters = {}, methods = {}, rows = {} }
   class.number = i - 1
   classes[name], by_ctype[tonumber(class.ctype)] = class, class

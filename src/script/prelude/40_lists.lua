@@ -7,10 +7,11 @@ local L = ffi.typeof("list")
 P.L = L
 local kinds = { [0] = { name = "body", list = "bodies" }, { name = "part", list = "parts" },
   { name = "joint", list = "joints" }, { name = "motor", list = "motors" }, { name = "shape", list = "shapes" },
-  { name = "behavior", list = "behaviors" }, { name = "group", list = "groups" } }
+  { name = "behavior", list = "behaviors" }, { name = "group", list = "groups" },
+  { name = "gear", list = "gears" } }
 
 -- what a list holds is gathered when it is asked for and kept until the structure of the world changes
-local entries = { [0] = {}, {}, {}, {}, {}, {}, {} }
+local entries = { [0] = {}, {}, {}, {}, {}, {}, {}, {} }
 
 local function gather(list, entry)
   local slot, generation, kind = list.slot_, list.generation_, list.kind_

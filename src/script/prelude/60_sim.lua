@@ -149,6 +149,53 @@ method("load_urdf", function(_, path, opts)
   return P.finish_making(code, classes.body, opts, urdf_own)
 end)
 
+-- gears
+local gear, gears = classes.gear, 7
+P.derive(gear)
+P.common(gear)
+for which, name in pairs { [0] = "joint_a", "joint_b" } do
+  gear.getters[name] = function(h)
+    if api.related(ctx, h.slot_, h.generation_, which) ~= 0 then P.gone(h) end
+    return (P.answered())
+  end
+end
+P.finish(gear)
+
+local gear_own = { name = true, offset = true }
+local function want_joint(value, what)
+  local of = P.class_of(value)
+  if not of or of.name ~= "joint" then fail("add_gear: %s is a joint, as body:joint(name), not %s", what, describe(value)) end
+  P.slot_of(value)
+  return value
+end
+local function free_gear_name(h, wanted)
+  local name, count = wanted, 1
+  while api.find(ctx, h.slot_, h.generation_, gears, name, #name) == 0 do
+    count = count + 1
+    name = wanted .. "_" .. count
+  end
+  return name
+end
+method("add_gear", function(h, joint_a, joint_b, ratio, opts)
+  want_joint(joint_a, "joint_a")
+  want_joint(joint_b, "joint_b")
+  P.want_number(ratio, "add_gear: the ratio")
+  P.check_opts(gear, opts, gear_own, "add_gear")
+  opts = opts or {}
+  local name = opts.name
+  if name == nil then
+    name = free_gear_name(h, P.names[joint_a] .. "_" .. P.names[joint_b])
+  else
+    P.want_text(name, "add_gear: name")
+  end
+  local offset = opts.offset == nil and 0 / 0 or P.want_number(opts.offset, "add_gear: offset")
+  local code = api.add_gear(ctx, name, #name, joint_a.slot_, joint_a.generation_, joint_b.slot_, joint_b.generation_,
+    ratio, offset)
+  return P.finish_making(code, gear, opts, gear_own, joint_a)
+end)
+method("gear", function(h, key) return P.find_in(h, gears, key) end)
+class.getters.gears = function(h) return P.list_of(h, gears) end
+
 method("state_hash", function(h)
   api.state_hash(ctx, h.slot_, h.generation_)
   return P.text()

@@ -151,7 +151,7 @@ function P.entry.names()
   end
   for _, key in ipairs(P.osc_members) do lines[#lines + 1] = "osc." .. key end
   for _, key in ipairs(P.preset_members) do lines[#lines + 1] = "presets." .. key end
-  for _, name in ipairs { "sim", "body", "part", "joint", "motor", "shape", "visuals", "camera", "look" } do
+  for _, name in ipairs { "sim", "body", "part", "joint", "motor", "shape", "visuals", "camera", "look", "gear" } do
     local class = P.classes[name]
     for _, key in ipairs(P.sorted_keys(class.getters)) do lines[#lines + 1] = name .. "." .. key end
     for _, key in ipairs(P.sorted_keys(class.methods)) do lines[#lines + 1] = name .. ":" .. key end

@@ -1,0 +1,90 @@
+// Gears in a reload: changed, added, removed, kept when a body is rebuilt; and in history and presets by their path.
+#include <cmath>
+
+#include "engine/edited.h"
+
+namespace limber::engine_test {
+namespace {
+
+constexpr const char* kGearShow = R"(
+sim.gravity = vec3()
+local arm = sim:add_box_shape("arm", vec3(0.05, 0.4, 0.05))
+local body = sim:add_body("train")
+body:add_part("frame", sim:add_box_shape("frame", vec3(1, 0.05, 0.05)), { mass = 0 })
+for i, x in ipairs { -0.4, 0, 0.4 } do
+  body:add_part("arm" .. i, arm, { position = vec3(x, 0, 0.1) })
+  body:add_joint("j" .. i, "frame", "arm" .. i, { axis = vec3(0, 0, 1) })
+end
+body:add_motor("j1").target = 0.3
+local gear = sim:add_gear(body:joint("j1"), body:joint("j2"), 2, { name = "gear" })
+--MORE
+)";
+
+Gear* gear_of(Edited& edited, const char* name = "gear") { return edited.world().find_gear(name); }
+double angle(Edited& edited, const char* joint) { return edited.body("train").find_joint(joint)->value(); }
+
+TEST(ReloadGears, AnEditThatChangesNothingChangesNoBit) {
+  Edited edited(kGearShow);
+  Edited control(kGearShow);
+  for (int i = 0; i < 3; i++) {
+    edited.show().ticks(5);
+    control.show().ticks(5);
+    EXPECT_EQ(edited.edit("--MORE", "--MORE\n"), Reload::End::applied);
+    ASSERT_EQ(edited.show().engine.state_hash(), control.show().engine.state_hash()) << i;
+  }
+}
+
+TEST(ReloadGears, ARatioIsChangedWhereItIs) {
+  Edited edited(kGearShow);
+  edited.show().ticks(60);
+  const NodeId id = gear_of(edited)->id();
+  EXPECT_NEAR(angle(edited, "j2"), 0.6, 1e-3);
+  EXPECT_EQ(edited.edit("body:joint(\"j2\"), 2", "body:joint(\"j2\"), -1"), Reload::End::applied);
+  edited.show().ticks(60);
+  EXPECT_EQ(gear_of(edited)->id(), id);
+  EXPECT_NEAR(angle(edited, "j2"), -0.3, 1e-3);
+}
+
+TEST(ReloadGears, ComeAndGoAndChangeTheirJoints) {
+  Edited edited(kGearShow);
+  edited.show().ticks(5);
+  EXPECT_EQ(edited.edit("--MORE", "sim:add_gear(body:joint(\"j2\"), body:joint(\"j3\"), -1, { name = \"more\" })"),
+            Reload::End::applied);
+  edited.show().ticks(60);
+  EXPECT_NEAR(angle(edited, "j3") + angle(edited, "j2"), 0, 0.05);
+  EXPECT_EQ(edited.edit("local gear = sim:add_gear(body:joint(\"j1\"), body:joint(\"j2\")",
+                        "local gear = sim:add_gear(body:joint(\"j1\"), body:joint(\"j3\")"),
+            Reload::End::applied);
+  EXPECT_EQ(gear_of(edited)->joint_b().name(), "j3");
+  EXPECT_EQ(edited.edit("local gear = ", "--"), Reload::End::applied);
+  EXPECT_EQ(gear_of(edited), nullptr);
+  EXPECT_NE(gear_of(edited, "more"), nullptr);
+}
+
+TEST(ReloadGears, StayWhenTheirBodyIsRebuilt) {
+  Edited edited(kGearShow);
+  edited.show().ticks(60);
+  const NodeId id = gear_of(edited)->id();
+  EXPECT_EQ(edited.edit("--MORE", R"(
+body:add_part("hat", arm, { position = vec3(0, 0, 1) })
+body:add_joint("weld", "arm3", "hat", { type = "fixed" }))"),
+            Reload::End::applied);
+  ASSERT_NE(gear_of(edited), nullptr);
+  EXPECT_EQ(gear_of(edited)->id(), id);
+  EXPECT_EQ(&gear_of(edited)->joint_b(), edited.body("train").find_joint("j2"));
+  edited.body("train").find_motor("j1")->set_target(-0.2);
+  edited.show().ticks(60);
+  EXPECT_NEAR(angle(edited, "j2"), -0.4, 1e-3);
+}
+
+TEST(ReloadGears, OneThatWasRemovedComesBack) {
+  Edited edited(kGearShow);
+  edited.show().ticks(5);
+  edited.world().remove_gear(*gear_of(edited));
+  edited.show().ticks(5);
+  EXPECT_EQ(edited.edit("--MORE", "--MORE\n"), Reload::End::applied);
+  EXPECT_NE(gear_of(edited), nullptr);
+}
+
+}  // namespace
+}  // namespace limber::engine_test
