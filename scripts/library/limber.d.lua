@@ -277,7 +277,7 @@ function body_:state_hash() end
 ---@field friction number # 0 .. 100, default 0.5. Coulomb friction; the values of two touching parts multiply.
 ---@field rolling_friction number # m, 0 .. 100, default 0. Resistance to rolling; the values of two touching parts are mixed.
 ---@field spinning_friction number # m, 0 .. 100, default 0. Resistance to spinning about the contact's normal; mixed like rolling friction.
----@field friction_direction vec3like # -1 .. 1. Direction, link frame, in which friction is scaled by friction_factor; zeros: in none.
+---@field friction_direction vec3like # -1 .. 1, default 0 0 0. Direction, link frame, in which friction is scaled by friction_factor; zeros: in none.
 ---@field friction_factor number # 0 .. 100, default 1. Friction along friction_direction as a multiple of that across it.
 ---@field restitution number # 0 .. 1, default 0. What a bounce gives back; the values of two touching parts multiply.
 ---@field self_collision boolean # default true. Whether it collides with other parts of its body.
@@ -300,7 +300,7 @@ local part_ = {}
 ---@field friction? number # 0 .. 100, default 0.5. Coulomb friction; the values of two touching parts multiply.
 ---@field rolling_friction? number # m, 0 .. 100, default 0. Resistance to rolling; the values of two touching parts are mixed.
 ---@field spinning_friction? number # m, 0 .. 100, default 0. Resistance to spinning about the contact's normal; mixed like rolling friction.
----@field friction_direction? vec3like # -1 .. 1. Direction, link frame, in which friction is scaled by friction_factor; zeros: in none.
+---@field friction_direction? vec3like # -1 .. 1, default 0 0 0. Direction, link frame, in which friction is scaled by friction_factor; zeros: in none.
 ---@field friction_factor? number # 0 .. 100, default 1. Friction along friction_direction as a multiple of that across it.
 ---@field restitution? number # 0 .. 1, default 0. What a bounce gives back; the values of two touching parts multiply.
 ---@field self_collision? boolean # default true. Whether it collides with other parts of its body.
