@@ -167,10 +167,10 @@ function warn(...) end
 ---@field motors motor_list # read-only. In stream order; called, it walks those that a pattern matches.
 ---@field behaviors behavior_list # read-only. In the order in which they were attached.
 ---@field excluded_pairs part[][] # read-only. Pairs of parts that are excluded from collision: `{ { a, b }, … }`.
----@field position vec3like # m, -10000 .. 10000. The root's link frame, world; setting it moves the whole body rigidly.
+---@field position vec3like # m, -10000 .. 10000. The root's link frame, world; setting it moves the whole body rigidly. The stability check restores it from 10 km on.
 ---@field rotation quat # The root's link frame, world: x y z w; setting it turns the whole body about the root.
----@field linear_velocity vec3like # m/s, -10000 .. 10000. The root's; setting it gives the whole body this motion.
----@field angular_velocity vec3like # rad/s, -10000 .. 10000. The root's; setting it turns the whole body about the root.
+---@field linear_velocity vec3like # m/s, -10000 .. 10000. The root's; setting it gives the whole body this motion. The stability check restores it from 500 m/s on.
+---@field angular_velocity vec3like # rad/s, -10000 .. 10000. The root's; setting it turns the whole body about the root. The stability check restores what tumbles at 1000 rad/s.
 ---@field self_collision boolean # default true. Whether its parts collide with each other; two that a joint connects never do, nor pairs of excluded_pairs.
 ---@field can_sleep boolean # default true. Whether its parts fall asleep when they are at rest; asleep, they cost nothing until something acts on them.
 ---@field asleep boolean # read-only. All its parts that can move are asleep.
@@ -178,10 +178,10 @@ function warn(...) end
 local body_ = {}
 
 ---@class body_opts
----@field position? vec3like # m, -10000 .. 10000. The root's link frame, world; setting it moves the whole body rigidly.
+---@field position? vec3like # m, -10000 .. 10000. The root's link frame, world; setting it moves the whole body rigidly. The stability check restores it from 10 km on.
 ---@field rotation? quat # The root's link frame, world: x y z w; setting it turns the whole body about the root.
----@field linear_velocity? vec3like # m/s, -10000 .. 10000. The root's; setting it gives the whole body this motion.
----@field angular_velocity? vec3like # rad/s, -10000 .. 10000. The root's; setting it turns the whole body about the root.
+---@field linear_velocity? vec3like # m/s, -10000 .. 10000. The root's; setting it gives the whole body this motion. The stability check restores it from 500 m/s on.
+---@field angular_velocity? vec3like # rad/s, -10000 .. 10000. The root's; setting it turns the whole body about the root. The stability check restores what tumbles at 1000 rad/s.
 ---@field self_collision? boolean # default true. Whether its parts collide with each other; two that a joint connects never do, nor pairs of excluded_pairs.
 ---@field can_sleep? boolean # default true. Whether its parts fall asleep when they are at rest; asleep, they cost nothing until something acts on them.
 ---@field enabled? boolean # False: out of the world, as health leaves a body that broke twice; reset enables.
@@ -284,13 +284,14 @@ function body_:state_hash() end
 ---@field collision_group integer # 0 .. 65535, default 1. The groups it is in, a bit each (16). Two parts collide if each one's group has a bit in the other's mask.
 ---@field collision_mask integer # 0 .. 65535, default 65535. The groups it collides with, a bit each (16).
 ---@field report_contacts boolean # default false. Tell when this part begins to touch another.
----@field position vec3like # m, -1000000 .. 1000000. Origin of the link frame, world.
+---@field position vec3like # m, -1000000 .. 1000000. Origin of the link frame, world. The stability check restores the body from 10 km on.
 ---@field rotation quat # Link frame, world: x y z w.
----@field linear_velocity vec3like # m/s, -10000 .. 10000. Velocity of the centre of mass, world.
----@field angular_velocity vec3like # rad/s, -10000 .. 10000. Angular velocity, world axes.
+---@field linear_velocity vec3like # m/s, -10000 .. 10000. Velocity of the centre of mass, world. The stability check restores the body from 500 m/s on.
+---@field angular_velocity vec3like # rad/s, -10000 .. 10000. Angular velocity, world axes. The stability check restores the body from 1000 rad/s on, spin about a driven joint's axis or a principal axis not counted, and from 20000 rad/s in any case.
 ---@field center vec3 # read-only, m. Centre of mass, world.
 ---@field inertia vec3 # read-only, kg·m². Moments of inertia about the principal axes; static: 0.
 ---@field principal_axes quat # read-only. Principal axes of inertia, world: x y z w.
+---@field rotation_clamped number # read-only, rad/s. Rotation held back in the last tick: clamped beyond π/4 per substep, spins about a driven joint's axis or a principal axis apart; 0: no clamp. More substeps lift it.
 local part_ = {}
 
 ---@class part_opts
@@ -307,22 +308,22 @@ local part_ = {}
 ---@field collision_group? integer # 0 .. 65535, default 1. The groups it is in, a bit each (16). Two parts collide if each one's group has a bit in the other's mask.
 ---@field collision_mask? integer # 0 .. 65535, default 65535. The groups it collides with, a bit each (16).
 ---@field report_contacts? boolean # default false. Tell when this part begins to touch another.
----@field position? vec3like # m, -1000000 .. 1000000. Origin of the link frame, world.
+---@field position? vec3like # m, -1000000 .. 1000000. Origin of the link frame, world. The stability check restores the body from 10 km on.
 ---@field rotation? quat # Link frame, world: x y z w.
----@field linear_velocity? vec3like # m/s, -10000 .. 10000. Velocity of the centre of mass, world.
----@field angular_velocity? vec3like # rad/s, -10000 .. 10000. Angular velocity, world axes.
+---@field linear_velocity? vec3like # m/s, -10000 .. 10000. Velocity of the centre of mass, world. The stability check restores the body from 500 m/s on.
+---@field angular_velocity? vec3like # rad/s, -10000 .. 10000. Angular velocity, world axes. The stability check restores the body from 1000 rad/s on, spin about a driven joint's axis or a principal axis not counted, and from 20000 rad/s in any case.
 
----Force in N for one tick, world; at a world point, else the centre.
+---Force in N for one tick, world; at a world point, else the centre. The stability check restores what exceeds 500 m/s.
 ---@param force vec3like
 ---@param at? vec3like
 function part_:apply_force(force, at) end
 
----Impulse in N·s, world; at a world point, else the centre.
+---Impulse in N·s, world; at a world point, else the centre. The stability check restores what exceeds 500 m/s.
 ---@param impulse vec3like
 ---@param at? vec3like
 function part_:apply_impulse(impulse, at) end
 
----Torque in N·m for one tick, world axes.
+---Torque in N·m for one tick, world axes. The stability check restores what tumbles at 1000 rad/s.
 ---@param torque vec3like
 function part_:apply_torque(torque) end
 
@@ -374,7 +375,7 @@ local joint_ = {}
 ---@field joint joint # read-only.
 ---@field mode "off"|"spin"|"servo"|"spring" # What is in force on the own axis; setting it sets the three flags.
 ---@field target number # m | rad, -10000 .. 10000. Where the own axis's servo or spring goes; full turns count: 20π is ten.
----@field speed number # m/s | rad/s, -10000 .. 10000. Speed of the own axis's spin; how fast its servo may go.
+---@field speed number # m/s | rad/s, -10000 .. 10000. Speed of the own axis's spin; how fast its servo may go. The stability check restores what moves at 500 m/s.
 ---@field bounce number # 0 .. 1, default 0. What a limit gives back: met at speed v, it is left at −bounce·v.
 ---@field damping number # N·s/m | N·m·s/rad, 0 .. 1000000, default 0. Passive damping of every free axis in any mode.
 ---@field target_smoothing number # s, 0 .. 2, default 0. Smooths targets that arrive at irregular times, best over two periods of the stream; motion is later by 1.5 times this and up to three ticks. 0: a target is reached in one tick.
@@ -407,7 +408,7 @@ local motor_ = {}
 ---@class motor_opts
 ---@field mode? "off"|"spin"|"servo"|"spring" # What is in force on the own axis; setting it sets the three flags.
 ---@field target? number # m | rad, -10000 .. 10000. Where the own axis's servo or spring goes; full turns count: 20π is ten.
----@field speed? number # m/s | rad/s, -10000 .. 10000. Speed of the own axis's spin; how fast its servo may go.
+---@field speed? number # m/s | rad/s, -10000 .. 10000. Speed of the own axis's spin; how fast its servo may go. The stability check restores what moves at 500 m/s.
 ---@field bounce? number # 0 .. 1, default 0. What a limit gives back: met at speed v, it is left at −bounce·v.
 ---@field damping? number # N·s/m | N·m·s/rad, 0 .. 1000000, default 0. Passive damping of every free axis in any mode.
 ---@field target_smoothing? number # s, 0 .. 2, default 0. Smooths targets that arrive at irregular times, best over two periods of the stream; motion is later by 1.5 times this and up to three ticks. 0: a target is reached in one tick.

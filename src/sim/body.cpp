@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <utility>
 
 #include <fmt/format.h>
@@ -11,6 +12,7 @@
 #include "base/log.h"
 #include "base/text.h"
 #include "sim/behavior_list.h"
+#include "sim/spin.h"
 #include "sim/world.h"
 
 namespace limber {
@@ -43,15 +45,18 @@ const Table& Body::table() {
       {
           state(view<&Body::read_position, &Body::write_position>(
               vec3("position", "m", {0, 0, 0}, -1e4, 1e4,
-                   "The root's link frame, world; setting it moves the whole body rigidly."))),
+                   "The root's link frame, world; setting it moves the whole body rigidly. The stability check "
+                   "restores it from 10 km on."))),
           state(view<&Body::read_rotation, &Body::write_rotation>(quat(
               "rotation", "The root's link frame, world: x y z w; setting it turns the whole body about the root."))),
           state(view<&Body::read_linear_velocity, &Body::write_linear_velocity>(
               vec3("linear_velocity", "m/s", {0, 0, 0}, -1e4, 1e4,
-                   "The root's; setting it gives the whole body this motion."))),
+                   "The root's; setting it gives the whole body this motion. The stability check restores it from 500 "
+                   "m/s on."))),
           state(view<&Body::read_angular_velocity, &Body::write_angular_velocity>(
               vec3("angular_velocity", "rad/s", {0, 0, 0}, -1e4, 1e4,
-                   "The root's; setting it turns the whole body about the root."))),
+                   "The root's; setting it turns the whole body about the root. The stability check restores what "
+                   "tumbles at 1000 rad/s."))),
           effect<&Body::effect_self_collision>(
               boolean("self_collision", true,
                       "Whether its parts collide with each other; two that a joint connects never do, nor pairs of "
@@ -382,15 +387,35 @@ void Body::take_good_pose() {
 }
 
 void Body::tell() {
-  for (const auto& part : parts_) part->tell();
+  for (const auto& part : parts_) {
+    part->tell();
+    clamped_ = clamped_ || clamped_by(part->rigid()) > 0;
+  }
   for (const auto& joint : joints_) {
     joint->tell();
+    if (joint->comes_apart()) torn_ = joint.get();
     const JointConstraint& constraint = joint->constraint();
     warns_ = warns_ || constraint.holds_spring() || constraint.target_outside();
   }
 }
 
+void Body::say_clamp() {
+  if (!std::exchange(clamped_, false) || said_clamp_) return;
+  said_clamp_ = true;
+  const auto clamp = [](const std::unique_ptr<Part>& part) { return clamped_by(part->rigid()); };
+  const Part& part = **std::ranges::max_element(parts_, {}, clamp);
+  const double allowed = kTurnClamp * world_.substeps() / world_.timestep();
+  const double by = clamped_by(part.rigid());
+  const double wanted = std::max(glm::length(part.angular_velocity()), allowed + by);
+  log_warning(
+      "part '{}/{}': rotation of {:.4g} rad/s is clamped by {:.4g} rad/s, since it exceeds 45 degrees per substep; "
+      "about "
+      "{} substeps would allow it (reported once per body)",
+      name(), part.name(), wanted, by, std::ceil(wanted * world_.timestep() / kTurnClamp));
+}
+
 void Body::say_caps() {
+  say_clamp();
   if (!std::exchange(warns_, false)) return;
   for (const auto& joint : joints_) {
     if (joint->motor() == nullptr) continue;

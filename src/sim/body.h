@@ -108,7 +108,8 @@ class Body {
   std::span<Joint* const> followers() const { return followers_; }
   /// Readouts of its parts and joints. [any thread, while nobody else is at this body]
   void tell();
-  /// After tell(): logs springs that are held at less than they were told and targets outside limits, once each.
+  /// After tell(): logs springs that are held at less than they were told, targets outside limits and clamped
+  /// rotations, once each.
   void say_caps();
   /// Logs followers that something holds away from where their leader puts them, once each.
   void report_slips() const;
@@ -124,6 +125,7 @@ class Body {
   friend class WorldUndo;
   friend class WorldKey;
   void keep();
+  void say_clamp();
   void build(const std::shared_ptr<const BodyModel>& model, const BuildOptions& options);
   void build_motor(Joint& joint, const JointModel& m, bool servo);
   void build_copy(const Body& source);
@@ -175,8 +177,11 @@ class Body {
   std::size_t good_poses_ = 0;  // so many of them count
   std::uint64_t kept_in_ = 0;   // the guarded call whose undo knows this body
   bool restored_once_ = false;
-  bool broken_ = false;  // healed in this tick
-  bool warns_ = false;   // a joint may have to report a capped spring or a target outside its limits
+  bool broken_ = false;   // healed in this tick
+  bool warns_ = false;    // a joint may have to report a capped spring or a target outside its limits
+  bool clamped_ = false;  // the rotation of a part was clamped in this tick
+  bool said_clamp_ = false;
+  Joint* torn_ = nullptr;  // a joint that came apart in this tick
 };
 
 }  // namespace limber

@@ -41,4 +41,10 @@ Vec3 gyroscopic_change(const Vec3& inertia, const Vec3& spin, double h) {
   return change;
 }
 
+// across·(r2 - r1) = -h·along·spin·r×axis with r = (r1 + r2)/2 turns r about the axis.
+Vec3 gyroscopic_change(double along, double across, const Vec3& axis, double spin, const Vec3& rest, double h) {
+  const double angle = 2 * std::atan(h * along * spin / (2 * across));
+  return rest * (std::cos(angle) - 1) + glm::cross(axis, rest) * std::sin(angle);
+}
+
 }  // namespace limber

@@ -10,4 +10,8 @@ namespace limber {
 /// I·(w2 - w1) + h·w×I·w = 0 with w = (w1 + w2)/2, which keeps energy and the momentum's length, whatever the step.
 Vec3 gyroscopic_change(const Vec3& inertia, const Vec3& spin, double h);
 
+/// The same for a spin about an axis of symmetry that is integrated apart (spin.h): the change of `rest`, the angular
+/// velocity perpendicular to the unit vector `axis`, with moments `along` the axis and `across` it.
+Vec3 gyroscopic_change(double along, double across, const Vec3& axis, double spin, const Vec3& rest, double h);
+
 }  // namespace limber

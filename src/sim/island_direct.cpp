@@ -20,10 +20,17 @@ constexpr double kTurnGoal = 0.44;
 constexpr int kNarrowings = 2;
 /// So often bends are corrected.
 constexpr int kBends = 4;
+/// Passes in which gyroscopic torques are corrected; and what is left of them then, relative to the angular velocity
+/// perpendicular to the spin, and to all of it.
+constexpr int kGyroPasses = 10;
+constexpr double kGyroMiss = 1e-5;
+constexpr double kGyroMissOfSpin = 1e-7;
 /// Fastest bend, m/s: what flies apart is not pulled together in one step.
 constexpr double kFastestBend = 20;
 /// Partings below this are left alone, m.
 constexpr double kLeastBend = 1e-4;
+/// The same where bodies rotate fast: a top would lose energy.
+constexpr double kLeastFastBend = 1e-6;
 /// Bends that made locks drive are eased so often, a little more than a straight line between the two would say.
 constexpr int kEasings = 2;
 constexpr double kEasing = 0.95;
@@ -38,11 +45,6 @@ constexpr double kFastest = 1e5;
 /// More than this no step with contacts may give one, m/s: where laws contradict each other (a link that begins inside
 /// of what never moves), to meet them all takes absurd impulses, and the sweeps, which miss them, do better.
 constexpr double kMostPush = 150;
-
-Quat turned(const Vec3& way) {
-  const double angle = glm::length(way);
-  return angle < 1e-9 ? quat_identity() : quat_axis(way / angle, angle);
-}
 
 // A lock along an axis.
 bool bends(const JointConstraint::Row& row) {
@@ -138,20 +140,47 @@ bool IslandDirect::settle_outer() {
   return false;
 }
 
-// A body that would turn far in one step goes straight where it should go round: motors and limits of its tree ask for
-// less then. True when something changed.
+Turn IslandDirect::turn_of(int body, const Vec3& w, const IslandPools& pools, double h) const {
+  const btRigidBody* rigid = pools.bodies[body].m_originalBody;
+  if (rigid != nullptr) return split_turn(*rigid, w, h);
+  Turn turn;
+  turn.rest = w;
+  return turn;
+}
+
+// Velocity of a body as the step was solved.
+Spatial IslandDirect::solved_velocity(int body, const IslandPools& pools) const {
+  const int node = node_of_[at(body)];
+  return node < 0 ? velocity(body, pools) : velocity(body, pools) + system_.change(node);
+}
+
+// Whether a motor on this axis of a joint makes one of its bodies spin.
+bool IslandDirect::drives_spin(const Link& link, int axis, const IslandPools& pools, double h) const {
+  if (axis < 3) return false;
+  const Vec3 along = from_bt(link.joint->linear_axis(axis - 3));
+  return std::ranges::any_of(std::array{link.body_a, link.body_b}, [&](int body) {
+    const Turn turn = turn_of(body, solved_velocity(body, pools).angular, pools, h);
+    return turn.spin != 0 && std::fabs(glm::dot(turn.axis, along)) > 0.99;
+  });
+}
+
+// A body that would turn far in one step, but for its spin, goes straight where it should go round: motors and limits
+// of its tree ask for less then. True when something changed.
 bool IslandDirect::limit_turns(const IslandPools& pools, double h) {
   bool changed = false;
   for (const Tree& t : trees_) {
     double fastest = 0;
     for (int i = t.first; i < t.last; ++i) {
       const Spatial v = velocity(body_of_[at(i)], pools) + system_.change(i);
-      fastest = std::max(fastest, glm::length(v.angular));
+      const double turn = glm::length(turn_of(body_of_[at(i)], v.angular, pools, h).rest);
+      if (t.last - t.first > 1 || link_of_[at(i)] >= 0) fastest = std::max(fastest, turn);
+      if (turn * h > kMostTurn) note_clamp(*pools.bodies[body_of_[at(i)]].m_originalBody, turn - kTurnGoal / h);
     }
     if (!(fastest * h > kMostTurn)) continue;
     for (int i = t.first; i < t.last; ++i) {
       for (TreeRow& row : system_.rows(i)) {
         if (!row.bounded() || row.constant()) continue;
+        if (link_of_[at(i)] >= 0 && drives_spin(links_[at(link_of_[at(i)])], row.axis, pools, h)) continue;
         row.velocity *= kTurnGoal / (fastest * h);
         changed = true;
       }
@@ -170,7 +199,7 @@ bool IslandDirect::bend_locks(const IslandPools& pools, double h) {
       if (bends(row)) most = std::max(most, std::fabs(link.bend[row.axis] - link.bent[row.axis]));
     }
   }
-  if (most <= kLeastBend) return false;
+  if (most <= (gyros_.empty() ? kLeastBend : kLeastFastBend)) return false;
   for (Link& link : links_) ask_for_bend(link, h);
   return true;
 }
@@ -193,13 +222,11 @@ void IslandDirect::ask_for_bend(Link& link, double h) {
 // How far the two sides of a joint will part in this step, beyond what its rows know, along the parent-side axes, m.
 Vec3 IslandDirect::bend_of(const Link& link, const IslandPools& pools, double h) {
   const JointConstraint& joint = *link.joint;
-  const auto moving = [&](int body) {
-    const int node = node_of_[at(body)];
-    return node < 0 ? velocity(body, pools) : velocity(body, pools) + system_.change(node);
-  };
-  const Spatial a = moving(link.body_a);
-  const Spatial b = moving(link.body_b);
-  if (glm::length(a.angular) * h > kBulletsTurn || glm::length(b.angular) * h > kBulletsTurn) {
+  const Spatial a = solved_velocity(link.body_a, pools);
+  const Spatial b = solved_velocity(link.body_b, pools);
+  const Turn turn_of_a = turn_of(link.body_a, a.angular, pools, h);
+  const Turn turn_of_b = turn_of(link.body_b, b.angular, pools, h);
+  if (turn_of_a.clamped(h) > 0 || turn_of_b.clamped(h) > 0) {
     gapes_ = true;
     return link.bent;
   }
@@ -208,9 +235,9 @@ Vec3 IslandDirect::bend_of(const Link& link, const IslandPools& pools, double h)
   Vec3 gap(0);
   for (int k = 0; k < 3; ++k) gap += from_bt(joint.linear_axis(k)) * joint.value(k);
   const Vec3 own_arm = arm_a - gap;
-  const Quat turn_a = turned(a.angular * h);
-  const Vec3 parted =
-      gap + (b.linear - a.linear) * h + (turned(b.angular * h) * arm_b - arm_b) - (turn_a * own_arm - own_arm);
+  const Quat turn_a = turn_of_a.rotation(h);
+  const Vec3 parted = gap + turn_of_b.shift(b.linear, h) - turn_of_a.shift(a.linear, h) +
+                      (turn_of_b.rotation(h) * arm_b - arm_b) - (turn_a * own_arm - own_arm);
   const Vec3 drift = carried(b, arm_b).linear - carried(a, arm_a).linear;
   Vec3 bend(0);
   for (int k = 0; k < 3; ++k) {
@@ -219,6 +246,73 @@ Vec3 IslandDirect::bend_of(const Link& link, const IslandPools& pools, double h)
                          kFastestBend * h);
   }
   return bend;
+}
+
+// Bodies whose gyroscopic torque depends so much on the velocities after the step that joints have to be known for it.
+void IslandDirect::collect_gyroscopes(const IslandPools& pools, double h) {
+  gyros_.clear();
+  gyro_passes_ = 0;
+  for (const Tree& t : trees_) {
+    if (t.last - t.first == 1 && link_of_[at(t.first)] < 0) continue;
+    for (int i = t.first; i < t.last; ++i) {
+      const btSolverBody& b = pools.bodies[body_of_[at(i)]];
+      const double before = static_cast<double>(b.m_angularVelocity.length());
+      const double after = glm::length(solved_velocity(body_of_[at(i)], pools).angular);
+      if (!(std::max(before, after) * h > kSlowTurn)) continue;
+      const Sym3& moment = system_.trees.node(i).inertia.moment;
+      const Vec3 applied = moment * gyroscopic_change(*b.m_originalBody, h);
+      gyros_.push_back({i, (moment.xx + moment.yy + moment.zz) / 3, applied, Vec3(0), {}, {}});
+    }
+  }
+}
+
+// Gyroscopic torques are those at the middle of the step, by the velocities that joints, motors and contacts allow: a
+// fixed point, approached by Anderson's mixing. True when loads changed: then all is solved anew.
+bool IslandDirect::correct_gyroscopes(const IslandPools& pools, double h) {
+  if (gyros_.empty() || gyro_passes_ >= kGyroPasses) return false;
+  bool missed = false;
+  for (Gyro& g : gyros_) {
+    const int body = body_of_[at(g.node)];
+    const Vec3 before = from_bt(pools.bodies[body].m_angularVelocity);
+    const Vec3 middle = (before + solved_velocity(body, pools).angular) / 2.0;
+    const btRigidBody& rigid = *pools.bodies[body].m_originalBody;
+    const Vec3 miss = h * gyroscopic_torque(rigid, middle, h) - g.impulse;
+    g.miss_changes[1] = g.miss_changes[0];
+    g.miss_changes[0] = miss - g.miss;
+    g.miss = miss;
+    const double rest = glm::length(split_turn(rigid, middle, h).rest);
+    const double most = kGyroMiss * rest + kGyroMissOfSpin * glm::length(middle);
+    missed = missed || glm::length(miss) > most * g.scale;
+  }
+  if (!missed) return false;
+  // the least of |miss - sum of weight·change| over the last one or two passes
+  const int known = std::min(gyro_passes_++, 2);
+  double normal[2][2] = {};
+  double right[2] = {};
+  for (const Gyro& g : gyros_) {
+    const double scale = 1 / (g.scale * g.scale);
+    for (int i = 0; i < known; ++i) {
+      right[i] += scale * glm::dot(g.miss_changes[at(i)], g.miss);
+      for (int j = 0; j < known; ++j) normal[i][j] += scale * glm::dot(g.miss_changes[at(i)], g.miss_changes[at(j)]);
+    }
+  }
+  double weight[2] = {};
+  const double determinant = normal[0][0] * normal[1][1] - normal[0][1] * normal[1][0];
+  if (known == 2 && determinant > 1e-9 * normal[0][0] * normal[1][1]) {
+    weight[0] = (right[0] * normal[1][1] - right[1] * normal[0][1]) / determinant;
+    weight[1] = (right[1] * normal[0][0] - right[0] * normal[1][0]) / determinant;
+  } else if (known > 0 && normal[0][0] > 0) {
+    weight[0] = right[0] / normal[0][0];
+  }
+  for (Gyro& g : gyros_) {
+    Vec3 change = g.miss;
+    for (int i = 0; i < known; ++i) change -= weight[i] * (g.impulse_changes[at(i)] + g.miss_changes[at(i)]);
+    g.impulse_changes[1] = g.impulse_changes[0];
+    g.impulse_changes[0] = change;
+    g.impulse += change;
+    system_.trees.node(g.node).load.angular += change;
+  }
+  return true;
 }
 
 // What locks gave or took (J): each impulse times the mean of its rate before and after the step. Locks of a machine do
@@ -332,10 +426,14 @@ bool IslandDirect::bend_all(const IslandPools& pools, double h) {
   for (const Tree& t : trees_) unbent_work_.push_back(passive(t) ? work_of_locks(t, pools) : 0);
   bool solved = true;
   bool bending = true;
+  bool turning = true;
   const auto time_left = [this] { return !effort_.over(settle_cost_); };
-  for (int pass = 0; pass < kBends && solved && bending && time_left(); ++pass) {
-    bending = bend_locks(pools, h);
-    if (bending) solved = settle();
+  collect_gyroscopes(pools, h);
+  for (int pass = 0; solved && (bending || turning) && time_left(); ++pass) {
+    turning = correct_gyroscopes(pools, h);
+    if (pass < kBends && bending) bending = bend_locks(pools, h);
+    if (pass >= kBends && !turning) break;
+    if (bending || turning) solved = settle();
   }
   gapes_ = gapes_ || bending;
   for (int pass = 0; pass < kEasings && solved && ease_bends(pools, h); ++pass) solved = settle();

@@ -13,6 +13,7 @@
 #include "sim/effort.h"
 #include "sim/gear_constraint.h"
 #include "sim/joint_constraint.h"
+#include "sim/spin.h"
 #include "sim/tree_rows.h"
 
 namespace limber {
@@ -96,6 +97,14 @@ class IslandDirect {
     unsigned held;
     std::array<double, 6> conductance;
   };
+  struct Gyro {  // the gyroscopic impulse on a fast body of a tree with joints, N·m·s
+    int node;
+    double scale;                         // of its moment of inertia, kg·m²
+    Vec3 impulse;                         // what is applied so far
+    Vec3 miss;                            // what the velocities found say beyond that
+    std::array<Vec3, 2> impulse_changes;  // of the last passes, newest first
+    std::array<Vec3, 2> miss_changes;
+  };
   struct Reach {  // what an outer row lets a tree feel
     int tree = -1;
     int begin = 0;  // in felt_
@@ -131,6 +140,7 @@ class IslandDirect {
   bool grow(int body, int parent, int link, const IslandPools& pools);
   bool add_node(int body, int parent, int link, const IslandPools& pools);
   Spatial velocity(int body, const IslandPools& pools) const;
+  Spatial solved_velocity(int body, const IslandPools& pools) const;
   static SpatialInertia inertia_of(const btRigidBody& body);
   static void float_free(TreeNode& node);
   /// The node hangs on the joint, as parts stand now; forward: the joint's child is the node. False: a singular pose.
@@ -179,14 +189,18 @@ class IslandDirect {
   bool bend_all(const IslandPools& pools, double h);
   enum class Whips : std::uint8_t { before, after };  // as the step began; as it was solved
   bool calm_whips(IslandPools& pools, double h, Whips which);
-  Spatial moving(int node, const IslandPools& pools, Whips which) const;
-  Rigid motion_of(const Tree& tree, const IslandPools& pools, Whips which) const;
+  Spatial moving(int node, const IslandPools& pools, Whips which, double h) const;
+  Rigid motion_of(const Tree& tree, const IslandPools& pools, Whips which, double h) const;
   void forget_calm(IslandPools& pools) const;
   bool narrow_friction();
   bool limit_turns(const IslandPools& pools, double h);
   bool bend_locks(const IslandPools& pools, double h);
   void ask_for_bend(Link& link, double h);
   Vec3 bend_of(const Link& link, const IslandPools& pools, double h);
+  Turn turn_of(int body, const Vec3& w, const IslandPools& pools, double h) const;
+  bool drives_spin(const Link& link, int axis, const IslandPools& pools, double h) const;
+  void collect_gyroscopes(const IslandPools& pools, double h);
+  bool correct_gyroscopes(const IslandPools& pools, double h);
   double work_of_locks(const Tree& tree, const IslandPools& pools) const;
   bool driven(const Tree& tree) const;
   bool passive(const Tree& tree) const;
@@ -204,8 +218,6 @@ class IslandDirect {
   void write(IslandPools& pools);
   void take_residuals(const IslandPools& pools);
 
-  /// A body that is faster than this in a step, rad, Bullet turns by less than that speed (ANGULAR_MOTION_THRESHOLD).
-  static constexpr double kBulletsTurn = kPi / 4;
   /// More contact and friction rows than this go to the plain solver: the dense response would cost more than it gains.
   static constexpr int kMostContactRows = 360;
   /// The same for an island without joints, where the iterative solver is cheaper and does nearly as well.
@@ -252,7 +264,9 @@ class IslandDirect {
   std::vector<int> from_;              // row of a box: where it was
   std::vector<double> lines_;
   std::vector<double> answers_;
-  double settle_cost_ = 0;                    // of the last settle()
+  double settle_cost_ = 0;  // of the last settle()
+  std::vector<Gyro> gyros_;
+  int gyro_passes_ = 0;
   bool gapes_ = false;                        // perhaps: bends do not fit yet, or do not know of so wide a turn
   TreeRows poses_{effort_};                   // the trees where the step will end
   std::vector<Pose> ends_;                    // node: there

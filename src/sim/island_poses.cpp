@@ -46,7 +46,7 @@ Vec3 told(const Quat& turn) {
 
 }  // namespace
 
-// Where Bullet will take every body, and where locked axes are meant to be then.
+// Where the step will take every body, and where locked axes are meant to be then.
 void IslandDirect::foresee(const IslandPools& pools, const btContactSolverInfo& info) {
   const btScalar h = info.m_timeStep;
   ends_.clear();
@@ -55,7 +55,11 @@ void IslandDirect::foresee(const IslandPools& pools, const btContactSolverInfo& 
     const btTransform pushed =
         integrated(b.m_worldTransform, b.m_pushVelocity, b.m_turnVelocity * info.m_splitImpulseTurnErp, h);
     const Spatial v = velocity(body_of_[i], pools) + system_.change(static_cast<int>(i));
-    ends_.push_back(from_bt(integrated(pushed, to_bt(v.linear), to_bt(v.angular), h)));
+    const Turn turn = turn_of(body_of_[i], v.angular, pools, static_cast<double>(h));
+    Pose end = from_bt(pushed);
+    end.position += turn.shift(v.linear, static_cast<double>(h));
+    end.rotation = turn.rotation(static_cast<double>(h)) * end.rotation;
+    ends_.push_back(end);
   }
   goals_.assign(links_.size(), {});
   for (std::size_t l = 0; l < links_.size(); ++l) {
@@ -123,11 +127,10 @@ void IslandDirect::go_there(IslandPools& pools, const btContactSolverInfo& info)
   for (std::size_t i = 0; i < body_of_.size(); ++i) {
     btSolverBody& b = pools.bodies[body_of_[i]];
     const Spatial v = velocity(body_of_[i], pools) + system_.change(static_cast<int>(i));
-    const btTransform turn =
-        integrated(btTransform::getIdentity(), btVector3(0, 0, 0), to_bt(v.angular), info.m_timeStep);
+    const Turn turn = turn_of(body_of_[i], v.angular, pools, h);
     const Pose begun = from_bt(b.m_worldTransform);
-    const Quat push = glm::conjugate(from_bt(turn.getRotation())) * ends_[i].rotation * glm::conjugate(begun.rotation);
-    b.m_pushVelocity = to_bt((ends_[i].position - begun.position) / h - v.linear);
+    const Quat push = glm::conjugate(turn.rotation(h)) * ends_[i].rotation * glm::conjugate(begun.rotation);
+    b.m_pushVelocity = to_bt((ends_[i].position - begun.position - turn.shift(v.linear, h)) / h);
     b.m_turnVelocity = to_bt(told(push) / (h * static_cast<double>(info.m_splitImpulseTurnErp)));
   }
 }

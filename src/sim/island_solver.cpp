@@ -5,7 +5,7 @@
 #include <cstring>
 #include <utility>
 
-#include "sim/gyroscope.h"
+#include "sim/spin.h"
 
 namespace limber {
 
@@ -14,13 +14,8 @@ void IslandSolver::convertBodies(btCollisionObject** bodies, int count, const bt
   for (int i = 0; i < count; ++i) {
     const btRigidBody* body = btRigidBody::upcast(bodies[i]);
     if (body == nullptr || body->isStaticOrKinematicObject()) continue;
-    const btVector3& inverse = body->getInvInertiaDiagLocal();
-    if (inverse[inverse.minAxis()] <= 0) continue;  // does not turn about every axis
-    const btMatrix3x3& axes = body->getWorldTransform().getBasis();
-    const Vec3 change = gyroscopic_change(1.0 / from_bt(inverse), from_bt(body->getAngularVelocity() * axes),
-                                          static_cast<double>(info.m_timeStep));
-    btSolverBody& solver = m_tmpSolverBodyPool[body->getCompanionId()];
-    solver.m_externalTorqueImpulse += axes * to_bt(change) * body->getAngularFactor();
+    const btVector3 change = to_bt(gyroscopic_change(*body, static_cast<double>(info.m_timeStep)));
+    m_tmpSolverBodyPool[body->getCompanionId()].m_externalTorqueImpulse += change * body->getAngularFactor();
   }
 }
 

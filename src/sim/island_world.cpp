@@ -7,6 +7,7 @@
 #include "base/prefetch.h"
 #include "sim/dispatcher.h"
 #include "sim/health.h"
+#include "sim/spin.h"
 
 namespace limber {
 namespace {
@@ -41,6 +42,14 @@ void leave_gyroscopic_torque_to_us(btRigidBody& body) {
 void end_tick(btTypedConstraint& joint) {
   if (joint.getConstraintType() == JointConstraint::kType) static_cast<JointConstraint&>(joint).end_tick();
   if (is_gear(joint)) static_cast<GearConstraint&>(joint).end_tick();
+}
+
+// The axes of fast parts' joints are read at each step's end: spin.h.
+void predict_angles(btTypedConstraint& constraint, btScalar h, bool refresh) {
+  if (constraint.getConstraintType() != JointConstraint::kType) return;
+  JointConstraint& joint = static_cast<JointConstraint&>(constraint);
+  joint.predict_angles(h);
+  if (refresh) joint.refresh();
 }
 
 }  // namespace
@@ -416,27 +425,32 @@ void IslandWorld::load_bodies(int first, int last, btScalar h) {
     // those of the next batch, which come as long as this one takes
     if (i + ahead < body_start_[island_count_]) prefetch(bodies_[i + ahead], sizeof(btRigidBody));
     btRigidBody& body = static_cast<btRigidBody&>(*bodies_[i]);
-    if (first_) body.applyGravity();
+    if (first_) {
+      body.applyGravity();
+      begin_clamps(body);
+    }
     if (body.getLinearDamping() != 0 || body.getAngularDamping() != 0) body.applyDamping(h);
   }
 }
 
 void IslandWorld::move_bodies(int first, int last, btScalar h) {
+  bool fast = false;
   for (int i = body_start_[first]; i < body_start_[last]; ++i) {
     btRigidBody& body = static_cast<btRigidBody&>(*bodies_[i]);
     if (!body.isActive() || body.isStaticOrKinematicObject()) continue;
-    btTransform moved;
-    body.predictIntegratedTransform(h, moved);
-    body.proceedToTransform(moved);
+    const double clamped = move_body(body, static_cast<double>(h));
+    if (clamped > 0) note_clamp(body, clamped / static_cast<double>(h));
     if (last_) {
       body.clearForces();
       sleep_.observe(body, tick_length_);
     }
-    if (ailment(body) != nullptr) ails_.store(true, std::memory_order_relaxed);
+    fast = fast || static_cast<double>(body.getAngularVelocity().length2() * h * h) > kSlowTurn * kSlowTurn;
+    if (ailment(body, static_cast<double>(h)) != nullptr) ails_.store(true, std::memory_order_relaxed);
   }
   const int ahead = joint_start_[last] - joint_start_[first];
   for (int i = joint_start_[first]; i < joint_start_[last]; ++i) {
     if (i + ahead < joint_start_[island_count_]) prefetch(joints_[i + ahead], sizeof(JointConstraint));
+    if (fast) predict_angles(*joints_[i], h, !last_);
     if (last_) end_tick(*joints_[i]);
   }
 }

@@ -1,7 +1,9 @@
 // Joint: its rows, and the constraint behind them.
 #include "sim/joint.h"
 
+#include <algorithm>
 #include <array>
+#include <cmath>
 #include <utility>
 
 #include "sim/body.h"
@@ -13,6 +15,11 @@ namespace limber {
 namespace {
 
 using namespace rows;
+
+/// Smaller gaps are no instability, whatever the size of the parts, m.
+constexpr double kLeastGap = 0.01;
+/// Consecutive ticks with a gap larger than the parts that are an instability: a push of a moment is none.
+constexpr int kTornTicks = 15;
 
 struct JointLiveRows {
   const Row *value, *speed, *angles, *offsets, *relrot, *position, *rotation;
@@ -202,6 +209,7 @@ void Joint::read_anew() {
   const double* told = body_.store().live_block(id_) + joint_live_rows().angles->offset;
   constraint_->reset({told[0], told[1], told[2]});
   if (mimic_gear_ != nullptr) mimic_gear_->reset();
+  torn_ticks_ = 0;
   tell();
 }
 
@@ -231,6 +239,35 @@ void Joint::tell() {
   rotation[1] = q.y;
   rotation[2] = q.z;
   rotation[3] = q.w;
+}
+
+double Joint::gap() const {
+  const Vec3 offsets = constraint_->offsets();
+  double sum = 0;
+  for (int axis = 0; axis < 3; axis++) {
+    if (is_open(axis) || constraint_->axis(axis).stop_cfm > 0) continue;
+    const double off = offsets[axis] - static_cast<double>(constraint_->axis(axis).lower);
+    sum += off * off;
+  }
+  return std::sqrt(sum);
+}
+
+bool Joint::comes_apart() {
+  const double apart = gap();
+  if (!(apart > kLeastGap)) {
+    torn_ticks_ = 0;
+    return false;
+  }
+  double size = 0;
+  for (const Part* part : {&parent_, &child_}) {
+    if (part->is_static()) continue;
+    btVector3 low, high;
+    part->geometry()->shape->getAabb(btTransform::getIdentity(), low, high);
+    const btVector3 sides = high - low;
+    size += static_cast<double>(sides[sides.maxAxis()]);
+  }
+  torn_ticks_ = apart > size ? torn_ticks_ + 1 : 0;
+  return torn_ticks_ >= kTornTicks;
 }
 
 void Joint::read_axis(double* out) const {

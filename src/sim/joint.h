@@ -64,6 +64,11 @@ class Joint {
 
   /// After Bullet stepped, or poses were set: readouts into the live block.
   void tell();
+  /// Once a tick, after tell(): true when the gap between the two sides of the joint has been larger than its parts for
+  /// some ticks. [any thread]
+  bool comes_apart();
+  /// Distance between the two sides of the joint along its locked axes, soft ones (stop_cfm) left out, m.
+  double gap() const;
   /// After poses were set by hand: reads them anew, turns as near as can be to those told.
   void read_anew();
   /// The angles told now, full turns included, are the start's; the next read_anew() comes back to them.
@@ -103,6 +108,7 @@ class Joint {
   bool gear_in_world_ = false;
   JointSpec spec_;
   Vec3 start_angles_{0};
+  int torn_ticks_ = 0;  // consecutive ticks with a gap larger than its parts
 };
 
 }  // namespace limber

@@ -8,6 +8,8 @@ namespace limber {
 namespace {
 
 constexpr double kTurn = 2 * kPi;
+/// Change of an angle in one internal step from which on it is predicted before it is read, rad.
+constexpr double kPredicted = 0.5;
 /// Least squared cosine of the middle angle: nearer to the singular pose than 5.7 degrees, rates are understated.
 constexpr btScalar kLeastCosine2 = btScalar(0.01);
 
@@ -137,6 +139,15 @@ void JointConstraint::read_pose(bool principal) {
 
 double JointConstraint::unwrapped(int axis, double raw) const {
   return raw + kTurn * std::round((angle_[at(axis)] - raw) / kTurn);
+}
+
+void JointConstraint::predict_angles(btScalar h) {
+  const btVector3 spin = m_rbB.getAngularVelocity() - m_rbA.getAngularVelocity();
+  for (int i = 0; i < 3; ++i) {
+    if (axes_[at(3 + i)].locked()) continue;
+    const double way = static_cast<double>(dual_[at(i)].dot(spin) * h);
+    if (std::fabs(way) > kPredicted) angle_[at(i)] += way;
+  }
 }
 
 // R = R_outer(a)·R_middle(b)·R_inner(c), its element ij being axis_a[i] · axis_b[j].

@@ -176,6 +176,9 @@ class JointConstraint : public btTypedConstraint {
   /// Impulses for these rows to start from, after those of the step before.
   const float* warm_impulses() const { return warm_.data(); }
   void forget_impulses() { warm_.fill(0); }
+  /// After the parts moved for `h` s: moves fast angles by their rates, so that the next reading of the pose, which is
+  /// ambiguous by full turns, takes the turn nearest to where they are expected.
+  void predict_angles(btScalar h);
   /// Ends a tick: averages what was applied, refreshes the readouts.
   void end_tick();
 

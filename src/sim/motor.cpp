@@ -98,8 +98,10 @@ const Table& Motor::table() {
     list.push_back(refuse<&Motor::refuse_own_axis>(state(view<&Motor::read_target, &Motor::write_target>(
         number("target", "m | rad", 0, -1e4, 1e4,
                "Where the own axis's servo or spring goes; full turns count: 20π is ten.")))));
-    list.push_back(refuse<&Motor::refuse_own_axis>(state(view<&Motor::read_speed, &Motor::write_speed>(
-        number("speed", "m/s | rad/s", 0, -1e4, 1e4, "Speed of the own axis's spin; how fast its servo may go.")))));
+    list.push_back(refuse<&Motor::refuse_own_axis>(state(
+        view<&Motor::read_speed, &Motor::write_speed>(number("speed", "m/s | rad/s", 0, -1e4, 1e4,
+                                                             "Speed of the own axis's spin; how fast its servo may go. "
+                                                             "The stability check restores what moves at 500 m/s.")))));
     list.push_back(effect<&Motor::effect_axes>(
         number("bounce", "", 0, 0, 1, "What a limit gives back: met at speed v, it is left at −bounce·v.")));
     list.push_back(effect<&Motor::effect_axes>(

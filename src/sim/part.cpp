@@ -8,6 +8,7 @@
 #include "base/prefetch.h"
 #include "sim/body.h"
 #include "sim/contact_friction.h"
+#include "sim/spin.h"
 #include "sim/world.h"
 
 namespace limber {
@@ -67,22 +68,35 @@ const Table& Part::table() {
           effect<&Part::effect_reports>(
               boolean("report_contacts", false, "Tell when this part begins to touch another.")),
           live(state(effect<&Part::effect_pose>(
-              vec3("position", "m", {0, 0, 0}, -1e6, 1e6, "Origin of the link frame, world.")))),
+              vec3("position", "m", {0, 0, 0}, -1e6, 1e6,
+                   "Origin of the link frame, world. The stability check restores the body from 10 km on.")))),
           live(state(effect<&Part::effect_pose>(quat("rotation", "Link frame, world: x y z w.")))),
           live(state(effect<&Part::effect_velocity>(
-              vec3("linear_velocity", "m/s", {0, 0, 0}, -1e4, 1e4, "Velocity of the centre of mass, world.")))),
+              vec3("linear_velocity", "m/s", {0, 0, 0}, -1e4, 1e4,
+                   "Velocity of the centre of mass, world. The stability check restores the body from 500 m/s on.")))),
           live(state(effect<&Part::effect_velocity>(
-              vec3("angular_velocity", "rad/s", {0, 0, 0}, -1e4, 1e4, "Angular velocity, world axes.")))),
+              vec3("angular_velocity", "rad/s", {0, 0, 0}, -1e4, 1e4,
+                   "Angular velocity, world axes. The stability check restores the body from 1000 rad/s on, spin about "
+                   "a driven joint's axis or a principal axis not counted, and from 20000 rad/s in any case.")))),
           view<&Part::read_center>(readout(vec3("center", "m", {0, 0, 0}, -1e6, 1e6, "Centre of mass, world."))),
           view<&Part::read_inertia>(readout(vec3("inertia", "kg·m²", {0, 0, 0}, 0, kUnbounded,
                                                  "Moments of inertia about the principal axes; static: 0."))),
           view<&Part::read_principal_axes>(
               readout(rows::quat("principal_axes", "Principal axes of inertia, world: x y z w."))),
-          act<&Part::act_force>(
-              action("apply_force", 3, 6, "Force in N for one tick, world; at a world point, else the centre.")),
-          act<&Part::act_impulse>(
-              action("apply_impulse", 3, 6, "Impulse in N·s, world; at a world point, else the centre.")),
-          act<&Part::act_torque>(action("apply_torque", 3, 3, "Torque in N·m for one tick, world axes.")),
+          view<&Part::read_rotation_clamped>(
+              readout(number("rotation_clamped", "rad/s", 0, 0, kUnbounded,
+                             "Rotation held back in the last tick: clamped beyond π/4 per substep, spins about a "
+                             "driven joint's axis or "
+                             "a principal axis apart; 0: no clamp. More substeps lift it."))),
+          act<&Part::act_force>(action("apply_force", 3, 6,
+                                       "Force in N for one tick, world; at a world point, else the centre. The "
+                                       "stability check restores what exceeds 500 m/s.")),
+          act<&Part::act_impulse>(action("apply_impulse", 3, 6,
+                                         "Impulse in N·s, world; at a world point, else the centre. The stability "
+                                         "check restores what exceeds 500 m/s.")),
+          act<&Part::act_torque>(action(
+              "apply_torque", 3, 3,
+              "Torque in N·m for one tick, world axes. The stability check restores what tumbles at 1000 rad/s.")),
       },
       &Part::fetch);
   return table;
@@ -365,6 +379,7 @@ void Part::read_inertia(double* out) const {
   put(out, geometry_->unit_inertia * body_.store().values(id_, table().at("mass"))[0]);
 }
 void Part::read_principal_axes(double* out) const { put(out, principal_axes()); }
+void Part::read_rotation_clamped(double* out) const { out[0] = clamped_by(*rigid_); }
 
 Result<void> Part::refuse_mass(const double*) const {
   if (!is_static_) return {};

@@ -106,6 +106,7 @@ class Part {
   void read_center(double* out) const;
   void read_inertia(double* out) const;
   void read_principal_axes(double* out) const;
+  void read_rotation_clamped(double* out) const;
   Result<void> refuse_mass(const double* in) const;
   Result<void> act_force(std::span<const double> args);
   Result<void> act_impulse(std::span<const double> args);

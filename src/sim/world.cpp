@@ -203,6 +203,7 @@ const std::vector<std::shared_ptr<const Geometry>>& World::geometries_of(
 
 double World::time() const { return store_.values(id_, *world_rows().time)[0]; }
 double World::timestep() const { return store_.values(id_, *world_rows().timestep)[0]; }
+int World::substeps() const { return static_cast<int>(store_.values(id_, *world_rows().substeps)[0]); }
 std::uint64_t World::seed() const { return static_cast<std::uint64_t>(store_.values(id_, *world_rows().seed)[0]); }
 
 void World::effect_gravity() {
@@ -254,9 +255,8 @@ void World::step() {
   loads_.push();
   contacts_.begin_tick();
   const double before = clock_seconds();
-  const int substeps = static_cast<int>(store_.values(id_, *world_rows().substeps)[0]);
   const DirectCounts solved = bullet_->direct_counts();
-  bullet_->step(timestep() / substeps, substeps);
+  bullet_->step(timestep() / substeps(), substeps());
   const double after = clock_seconds();
   contacts_.end_tick();
   tick_++;
@@ -297,14 +297,18 @@ void World::tell_bodies() {
     for (int i = first; i < end; i++) {
       Body& body = *awake_bodies_[static_cast<std::size_t>(i)];
       if (!body.in_world()) continue;
+      body.torn_ = nullptr;
       body.tell();
-      if (!body.broken_) body.take_good_pose();
+      if (!body.broken_ && body.torn_ == nullptr) body.take_good_pose();
     }
   };
   share_out_places(team_.get(), static_cast<int>(awake_bodies_.size()), tell, kBodies);
   for (Body* const body : awake_bodies_) {
     body->say_caps();
     body->report_slips();
+    Joint* const torn = std::exchange(body->torn_, nullptr);
+    if (torn == nullptr || body->broken_) continue;
+    heal(*body, torn->child(), fmt::format("joint '{}' has come apart by {:.3g} m", torn->name(), torn->gap()));
   }
   report_slips();
   if (known) return;
@@ -337,15 +341,17 @@ void World::after_internal_step(btDynamicsWorld* bullet, btScalar h) {
   for (const auto& body : world.bodies_) {
     if (!body->in_world()) continue;
     for (const auto& part : body->parts()) {
-      const char* const what = part->is_static() ? nullptr : ailment(part->rigid());
+      const char* const what = part->is_static() ? nullptr : ailment(part->rigid(), static_cast<double>(h));
       if (what == nullptr) continue;
-      world.heal(*body, *part, what);
+      world.heal(*body, *part, fmt::format("part '{}' {}", part->name(), what));
       break;
     }
   }
 }
 
-void World::heal(Body& body, const Part& part, const char* what) {
+void World::heal(Body& body, const Part& part, const std::string& what) {
+  const bool known = body.broken_;
+  const std::string cause = known ? "" : likely_cause(body, part, *bullet_->getDispatcher(), substeps());
   for (std::size_t i = 0; i < body.parts_.size(); i++) {
     Part& each = *body.parts_[i];
     each.set_pose(i < body.good_poses_ ? body.last_good_[i] : each.start_pose());
@@ -367,11 +373,10 @@ void World::heal(Body& body, const Part& part, const char* what) {
   health_events_++;
   if (std::exchange(body.restored_once_, true)) {
     body.set_enabled(false);
-    log_warning("body '{}': part '{}' {} again; the body is switched off (reset or enabled = true brings it back)",
-                body.name(), part.name(), what);
+    log_warning("body '{}': {} again; the body is switched off (reset or enabled = true brings it back); {}",
+                body.name(), what, cause);
   } else {
-    log_warning("body '{}': part '{}' {}; the body is put back to its last good pose, at rest", body.name(),
-                part.name(), what);
+    log_warning("body '{}': {}; the body is put back to its last good pose, at rest; {}", body.name(), what, cause);
   }
 }
 

@@ -96,6 +96,7 @@ class World {
   double time() const;
   std::uint64_t tick() const { return tick_; }
   double timestep() const;
+  int substeps() const;
   std::uint64_t seed() const;
 
   /// One tick: behaviours, effects of what was set, `substeps` internal steps, readouts, contacts, health.
@@ -160,7 +161,7 @@ class World {
   void report_overlap(const Body& body, const Part& a, const Part& b, double depth);
   void log_overlaps();
   bool awake_bodies_known() const;
-  void heal(Body& body, const Part& part, const char* what);
+  void heal(Body& body, const Part& part, const std::string& what);
   static void after_internal_step(btDynamicsWorld* bullet, btScalar h);
   Result<void> name_is_free(NodeId group, std::string_view kind, std::string_view name) const;
   Result<void> act_reset(std::span<const double> args);

@@ -78,11 +78,11 @@ void WorldKey::pass_loads(KeyBytes& key, World& world) {
 
 void WorldKey::pass(KeyBytes& key, Body& body) {
   key.pass_all(body.planned_, body.in_world_, body.entered_parts_, body.entered_joints_, body.moved_, body.fresh_);
-  key.pass_all(body.pairs_.list, body.pairs_.checked, body.reported_static_velocity_);
+  key.pass_all(body.pairs_.list, body.pairs_.checked, body.reported_static_velocity_, body.said_clamp_);
   key.pass_all(body.last_good_, body.good_poses_, body.restored_once_, body.broken_);
   for (const auto& part : body.parts_) key.pass_all(part->start_, part->reports_);
   for (const auto& joint : body.joints_) {
-    key.pass_all(joint->open_, joint->in_world_, joint->gear_in_world_, joint->start_angles_);
+    key.pass_all(joint->open_, joint->in_world_, joint->gear_in_world_, joint->start_angles_, joint->torn_ticks_);
   }
   for (const auto& motor : body.motors_)
     key.pass_all(motor->said_contradiction_, motor->said_cap_, motor->warned_outside_, motor->hold_);
