@@ -193,13 +193,13 @@ Json play_hand(double torque, int steps) {
 }
 
 // How often a scene's step is taken before the next one has its turn, so that each finds its own caches again.
-struct Turn {
-  explicit Turn(const RawScene& scene, int count) : side(scene, RawSolver::direct), steps(count) {}
+struct BenchRun {
+  explicit BenchRun(const RawScene& scene, int count) : side(scene, RawSolver::direct), steps(count) {}
   void take() {
     for (int i = 0; i < steps; ++i) side.step();
   }
   // beside the same of another scene, both spread over their units
-  Json figures(const char* what, double units, const Turn& base, double base_units) const {
+  Json figures(const char* what, double units, const BenchRun& base, double base_units) const {
     const auto each = [&](double part) { return 1e6 * side.times.at(part) / units; };
     const auto ratio = [&](double part) {
       return rounded(each(part) / (1e6 * base.side.times.at(part) / base_units), 3);
@@ -221,9 +221,9 @@ Json play_growth(int steps) {
   constexpr double kStrong = 1e6;  // N·m: what holds 170 parts; with less the servos of long arms give way
   Json out;
   const int rounds = steps > 0 ? steps : 60;
-  std::vector<std::pair<int, std::unique_ptr<Turn>>> arms;
+  std::vector<std::pair<int, std::unique_ptr<BenchRun>>> arms;
   for (const int parts : {17, 34, 85, 170}) {
-    arms.emplace_back(parts, std::make_unique<Turn>(raw_arm(parts, 1, kStrong, 0.3, false), 10));
+    arms.emplace_back(parts, std::make_unique<BenchRun>(raw_arm(parts, 1, kStrong, 0.3, false), 10));
   }
   for (int i = 0; i < rounds; ++i) {
     for (const auto& [parts, turn] : arms) turn->take();
@@ -231,8 +231,8 @@ Json play_growth(int steps) {
   for (const auto& [parts, turn] : arms) {
     out[fmt::format("{} joints", parts)] = turn->figures("joint", parts, *arms[0].second, arms[0].first);
   }
-  Turn few(raw_arms(100), 10);
-  Turn many(raw_arms(1000), 1);
+  BenchRun few(raw_arms(100), 10);
+  BenchRun many(raw_arms(1000), 1);
   for (int i = 0; i < rounds; ++i) {
     few.take();
     many.take();
