@@ -21,7 +21,9 @@ class RotationTarget final : public Behavior {
 const BuiltInBehavior registered([] {
   return BehaviorType::of<RotationTarget>(
       "rotation_target", "Leads servos and springs towards angles, a step at a time.", BehaviorTargets::motors,
-      {vec3("target", "rad", {0, 0, 0}, -1e4, 1e4, "About the joint's axes, in its own order; z is the own axis. On a free axis it goes the shorter way round."),
+      {vec3("target", "rad", {0, 0, 0}, -1e4, 1e4,
+            "About the joint's axes, in its own order; z is the own axis. On a free axis it goes the shorter way "
+            "round."),
        number("speed", "rad", 0.1, 0, 1e4,
               "How far ahead of the joint the servo or spring is set, at each application."),
        rows::app_interval()});

@@ -262,7 +262,8 @@ TEST(Dispatch, NoAnswerIsAQuestion) {
     for (const Message& answer : asked.answers) EXPECT_NE(dispatch.execute(answer).kind, Kind::answered);
   };
   for (Dispatch* dispatch : {&full.dispatch, &bare.dispatch}) {
-    for (const char* list : {"/list/bodies", "/list/shapes", "/list/gears", "/list/groups"}) check(*dispatch, message(list));
+    for (const char* list : {"/list/bodies", "/list/shapes", "/list/gears", "/list/groups"})
+      check(*dispatch, message(list));
     for (const char* list : {"/list/parts", "/list/joints", "/list/motors", "/list/behaviors"}) {
       check(*dispatch, message(list, "floor"));
     }
