@@ -111,7 +111,7 @@ TEST(Dispatch, PathsWithPatterns) {
       {"/physics/body/[!a]*/part/*/friction", {"1/part/base", "1/part/tip", "floor/part/floor"}},
       {"//tip/friction", {"arm/part/tip", "1/part/tip"}},
       {"/physics//part/base/friction", {"arm/part/base", "1/part/base"}},
-      {"/physics/body/arm/part/tip/frictio*", {"arm/part/tip"}},
+      {"/physics/body/arm/part/tip/frict?on", {"arm/part/tip"}},
       {"/physics/body/arm/part/tip/FRICTION", {"arm/part/tip"}},
   };
   for (const Case& c : cases) {

@@ -255,7 +255,7 @@ sim:add_body("two"):add_part("tip", ball)
       {"removed body", "sim:add_body(\"two\"):add_part(\"tip\", ball)", "",
        "2 things are gone (/physics/body/two, /physics/body/two/part/tip)", "/scene/wind", 8},
       {"added body", "sim:add_body(\"two\")", "sim:add_body(\"three\"):add_part(\"tip\", ball) sim:add_body(\"two\")",
-       "8 values came since and stay as they are", "/scene/wind", 8},
+       "15 values came since and stay as they are", "/scene/wind", 8},
       {"a part that moves now", "{ mass = 0,", "{ mass = 2,", "1 value came since and stays as it is",
        "/physics/body/one/part/base/mass", 2},
       {"removed behaviour", "local wind = one:add_behavior(\"random_force\", \"wind\", { max_amp = 3 })", "",
