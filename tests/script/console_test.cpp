@@ -180,7 +180,8 @@ TEST_F(Console, CompletesGlobalsMembersAndMethods) {
             "add_capsule_shape add_compound_shape add_cone_shape add_convex_mesh_shape "
             "add_cylinder_shape");
   EXPECT_EQ(words("arm."),
-            "alive angular_velocity behaviors enabled excluded_pairs joints linear_velocity motors name parts position "
+            "alive angular_velocity asleep behaviors can_sleep enabled excluded_pairs joints linear_velocity motors "
+            "name parts position "
             "root rotation self_collision");
   EXPECT_EQ(words("arm:mo"), "motor motors");
   EXPECT_EQ(words("params.w"), "warmth wind");
