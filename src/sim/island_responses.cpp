@@ -12,7 +12,7 @@ namespace {
 /// What a free axis costs on the way of an impulse to the root, in numbers.
 constexpr double kAxisNumbers = 24;
 /// Softness of a contact that joints hold still, as part of the response of its two bodies alone.
-constexpr double kHeldSoftness = 1e-4;
+constexpr double kHeldSoftness = 4e-4;
 /// For so many rows that were known one new column is worth it.
 constexpr int kRowsForColumn = 6;
 /// An axis that, with those before it held still, keeps less than this part of its rate is left to the whole way.
