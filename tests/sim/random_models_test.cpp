@@ -30,7 +30,7 @@ RandomOutcome play_twice(std::uint64_t number, const RandomPlan& plan) {
 TEST(RandomModels, TreesWithoutContactsGainNoEnergy) {
   RandomPlan plan;
   plan.contacts = plan.loops = plan.iterative = false;
-  // known to fail: scene 2, where a floating joint spins about three axes, gains 0.5 J a step
+  // scene 2 is left out: the energy that the account can't explain grows by 0.5 J a step there; the cause is not known
   const std::uint64_t first = from_environment("LIMBER_RANDOM_FIRST", 3);
   const std::uint64_t count = from_environment("LIMBER_RANDOM_MODELS", 12);
   for (std::uint64_t n = first; n < first + count; n++) {
