@@ -16,6 +16,8 @@ constexpr std::size_t kLabel = 16;
 
 thread_local BulletMemory* here = nullptr;
 
+// addresses are kept as numbers: the lowest bit of a label tells an arena from the heap
+// NOLINTBEGIN(performance-no-int-to-ptr)
 std::uintptr_t& label_of(void* block) { return static_cast<std::uintptr_t*>(block)[-1]; }
 
 void* take_from_heap(std::size_t size, std::size_t alignment) {
@@ -48,6 +50,7 @@ void give_back(void* block) {
     std::free(reinterpret_cast<void*>(label));
   }
 }
+// NOLINTEND(performance-no-int-to-ptr)
 
 }  // namespace
 

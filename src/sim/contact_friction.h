@@ -7,7 +7,7 @@ namespace limber {
 
 /// Which row of friction one of Bullet's is: its m_overrideNumSolverIterations, which Bullet does not use there. One
 /// along an axis is followed by the one across.
-enum FrictionRow : int { kFrictionSpin, kFrictionAlong, kFrictionAcross };
+enum FrictionRow : int { friction_spin, friction_along, friction_across };
 
 /// Two axes of friction in the tangent plane. The first is the direction in which friction is expected to act: against
 /// the slip where the contact slides, else as in the step before. A pyramid of friction that is aligned with it has the

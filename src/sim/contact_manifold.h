@@ -7,10 +7,8 @@
 
 namespace limber {
 
-/// Flags of a contact point beside Bullet's own.
-enum ContactPointFlag : int {
-  kContactClosed = 1 << 16,  ///< It has touched and has taken the impulse of that; see contacts.h.
-};
+/// Flag of a contact point beside Bullet's own: it has touched and has taken the impulse of that; see contacts.h.
+inline constexpr int kContactClosed = 1 << 16;
 
 /// Collects the points of one step, keeps at most four of them (the deepest, and those that span the largest area),
 /// and writes them into Bullet's manifold. Points that were there keep their impulses, which solvers start from.

@@ -103,7 +103,7 @@ void IslandSolver::convert_contact(btPersistentManifold& manifold, const btConta
       row.m_lowerLimit = -frame.friction;
       row.m_upperLimit = frame.friction;
       add_external_torque(row, a, b);
-      row.m_overrideNumSolverIterations = axis == &point.m_lateralFrictionDir1 ? kFrictionAlong : kFrictionAcross;
+      row.m_overrideNumSolverIterations = axis == &point.m_lateralFrictionDir1 ? friction_along : friction_across;
       if (axis == &point.m_lateralFrictionDir2) follow_slip(row, frame, pressing);
     }
     convert_rolling(point, index, id_a, id_b, pressing);
@@ -119,15 +119,15 @@ void IslandSolver::convert_rolling(btManifoldPoint& point, int contact, int id_a
     return row;
   };
   if (point.m_combinedSpinningFriction > 0) {
-    add(point.m_normalWorldOnB, point.m_combinedSpinningFriction, kFrictionSpin);
+    add(point.m_normalWorldOnB, point.m_combinedSpinningFriction, friction_spin);
   }
   if (!(point.m_combinedRollingFriction > 0)) return;
   const btSolverBody& a = m_tmpSolverBodyPool[id_a];
   const btSolverBody& b = m_tmpSolverBodyPool[id_b];
   const FrictionFrame frame =
       rolling_frame(point, present(a).angular - present(b).angular, expected(a).angular - expected(b).angular);
-  add(frame.along, frame.friction, kFrictionAlong);
-  follow_slip(add(frame.across, frame.friction, kFrictionAcross), frame, pressing);
+  add(frame.along, frame.friction, friction_along);
+  follow_slip(add(frame.across, frame.friction, friction_across), frame, pressing);
 }
 
 // Rolling friction in two directions together, within a disc; friction against spinning by itself.
@@ -155,11 +155,11 @@ btScalar IslandSolver::sweep_rolling() {
     if (!(pressing > 0)) continue;
     const btScalar most = row.m_friction * pressing;
     const btScalar first = row.m_appliedImpulse + free_impulse(row);
-    if (row.m_overrideNumSolverIterations == kFrictionSpin) {
+    if (row.m_overrideNumSolverIterations == friction_spin) {
       set(row, std::clamp(first, -most, most));
       continue;
     }
-    if (row.m_overrideNumSolverIterations != kFrictionAlong) continue;
+    if (row.m_overrideNumSolverIterations != friction_along) continue;
     btSolverConstraint& across = rows[i + 1];
     const btScalar second = across.m_appliedImpulse + free_impulse(across);
     const btScalar length = std::hypot(first, second);
@@ -174,7 +174,7 @@ btScalar IslandSolver::sweep_rolling() {
 void IslandSolver::remember_rolling_friction() {
   const btConstraintArray& rows = m_tmpSolverContactRollingFrictionConstraintPool;
   for (int i = 0; i + 1 < rows.size(); ++i) {
-    if (rows[i].m_overrideNumSolverIterations != kFrictionAlong) continue;
+    if (rows[i].m_overrideNumSolverIterations != friction_along) continue;
     auto* point =
         static_cast<btManifoldPoint*>(m_tmpSolverContactConstraintPool[rows[i].m_frictionIndex].m_originalContactPoint);
     remember_rolling(*point, rows[i].m_relpos2CrossNormal * rows[i].m_appliedImpulse +

@@ -198,7 +198,7 @@ bool IslandDirect::narrow_friction() {
     OuterRow& first = outer_[i];
     OuterRow& second = outer_[i + 1];
     if (first.contact == nullptr || first.normal < 0) continue;
-    if (first.contact->m_overrideNumSolverIterations != kFrictionAlong) continue;
+    if (first.contact->m_overrideNumSolverIterations != friction_along) continue;
     const double most = static_cast<double>(first.contact->m_friction) * outer_[at(first.normal)].impulse;
     const double force = std::hypot(first.impulse, second.impulse);
     if (!(force > kOutsideOfCone * most)) continue;
