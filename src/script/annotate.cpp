@@ -82,8 +82,8 @@ std::string own_names(std::string_view names, std::string_view text) {
   for (const std::string_view name : split(names, '\n')) {
     if (name.empty() || name.find(':') != std::string_view::npos) continue;
     const std::size_t dot = name.find('.');
-    static const std::set<std::string_view, std::less<>> kLibraries = {"bit", "coroutine", "math", "string", "table"};
-    if (dot != std::string_view::npos && !kLibraries.contains(name.substr(0, dot))) continue;
+    static const std::set<std::string_view, std::less<>> libraries = {"bit", "coroutine", "math", "string", "table"};
+    if (dot != std::string_view::npos && !libraries.contains(name.substr(0, dot))) continue;
     const bool defined = text.find(fmt::format("\nfunction {}(", name)) != std::string_view::npos ||
                          text.find(fmt::format("\n{} = ", name)) != std::string_view::npos;
     if (defined) continue;

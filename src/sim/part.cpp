@@ -33,6 +33,7 @@ const LiveRows& live_rows() {
 
 }  // namespace
 
+// NOLINTNEXTLINE(readability-function-size): a list of entries
 const Table& Part::table() {
   static const Table table(
       "part", "/physics/body/<body>/part/<part>", "/physics/part",
