@@ -19,13 +19,13 @@ constexpr double kEnoughWhileMotorsHold = 4;
 /// hold the two against each other, or a loop repeats what another joint locks, the trees respond by rounding errors
 /// only, and without it an impulse would be a multiple of them.
 constexpr double kLeastSoftness = 1e-6;
-/// The same where penetration is repaired: what the joints let move less than this part of what the bodies alone would
-/// is left where it is.
+/// The same for the repair of penetration: a contact that the joints let move by less than about this part of what the
+/// two bodies alone would move is not repaired.
 constexpr double kLeastPushSoftness = 1e-3;
 /// Fastest repair of penetration, m/s.
 constexpr double kFastestPush = 2;
-/// Furthest turn of a body by one repair, rad; the whole repair of a step is reduced until no body turns further: its
-/// velocity stays while it is turned, so its energy changes.
+/// Largest rotation of a body by the repair of one step, rad. The repair of the island is scaled down to it, because a
+/// body that is rotated while its velocity stays changes its energy.
 constexpr double kFurthestPushTurn = 0.05;
 
 // Rate per impulse of one body alone.

@@ -54,8 +54,8 @@ void IslandDirect::feel(const OuterRow& row, Reaches& reaches) {
   if (ask != nullptr) *ask = 0;
 }
 
-// Adds a row's softness to its response. A contact that joints let respond less than its bodies alone would is made
-// softer, once for the step: what joints hold against each other gives way before it throws the rest of the tree.
+// Adds the softness of a row to its response. A contact is made softer, once per step, the less the joints let it
+// respond compared with its two bodies alone: its impulse stays small instead of throwing the rest of the tree.
 void IslandDirect::soften(BoxSolver& box, int i) {
   OuterRow& row = outer_[at(boxed_[at(i)])];
   double& response = box.response(i, i);
