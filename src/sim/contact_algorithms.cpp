@@ -82,39 +82,47 @@ class PlaneAlgorithm : public PairAlgorithm {
   bool plane_first_;
 };
 
-// Clips a polygon, or a segment, against the sides of the reference face.
-void clip(const ContactFeature& reference, ContactFeature& incident) {
-  for (int side = 0; side < reference.count && incident.count > 0; ++side) {
+// What of a polygon, or a segment, is not outside of the plane through `from` with this outward normal.
+void cut(const ContactFeature& whole, const btVector3& from, const btVector3& outward, ContactFeature& part) {
+  part.count = 0;
+  const int sides = whole.count > 2 ? whole.count : whole.count - 1;
+  btScalar p_out = outward.dot(whole[0] - from) - kClipSlack;
+  if (sides == 0 && p_out <= 0) part.add(whole[0]);
+  for (int i = 0; i < sides; ++i) {
+    const btVector3& p = whole[i];
+    const btVector3& q = whole[i + 1 < whole.count ? i + 1 : 0];
+    const btScalar q_out = outward.dot(q - from) - kClipSlack;
+    if (p_out <= 0) part.add(p);
+    if ((p_out <= 0) != (q_out <= 0)) part.add(p + (q - p) * (p_out / (p_out - q_out)));
+    if (whole.count == 2 && q_out <= 0) part.add(q);
+    p_out = q_out;
+  }
+}
+
+// Clips a polygon, or a segment, against the sides of the reference face. The result is one of the two features given.
+const ContactFeature& clip(const ContactFeature& reference, ContactFeature& incident, ContactFeature& spare) {
+  spare.normal = incident.normal;
+  spare.margin = incident.margin;
+  ContactFeature* whole = &incident;
+  ContactFeature* part = &spare;
+  for (int side = 0; side < reference.count && whole->count > 0; ++side) {
     const btVector3& from = reference[side];
-    const btVector3 edge = reference[(side + 1) % reference.count] - from;
+    const btVector3 edge = reference[side + 1 < reference.count ? side + 1 : 0] - from;
     const btScalar length = edge.length();
     if (!(length > SIMD_EPSILON)) continue;
-    const btVector3 outward = edge.cross(reference.normal) / length;
-    ContactFeature clipped;
-    clipped.normal = incident.normal;
-    clipped.margin = incident.margin;
-    const auto outside = [&](const btVector3& point) { return outward.dot(point - from) - kClipSlack; };
-    const int sides = incident.count > 2 ? incident.count : incident.count - 1;
-    if (sides == 0 && outside(incident[0]) <= 0) clipped.add(incident[0]);
-    for (int i = 0; i < sides; ++i) {
-      const btVector3& p = incident[i];
-      const btVector3& q = incident[(i + 1) % incident.count];
-      const btScalar p_out = outside(p);
-      const btScalar q_out = outside(q);
-      if (p_out <= 0) clipped.add(p);
-      if ((p_out <= 0) != (q_out <= 0)) clipped.add(p + (q - p) * (p_out / (p_out - q_out)));
-      if (incident.count == 2 && q_out <= 0) clipped.add(q);
-    }
-    incident = clipped;
+    cut(*whole, from, edge.cross(reference.normal) / length, *part);
+    std::swap(whole, part);
   }
+  return *whole;
 }
 
 // Points of the incident feature below, or close above, the reference face. `flipped`: the reference is body A's.
 void add_points(const ContactFeature& reference, ContactFeature& incident, bool flipped, ContactManifold& points) {
-  clip(reference, incident);
+  ContactFeature spare;
+  const ContactFeature& clipped = clip(reference, incident, spare);
   const btVector3& normal = reference.normal;
-  for (int i = 0; i < incident.count; ++i) {
-    const btVector3 point = incident[i] - normal * incident.margin;
+  for (int i = 0; i < clipped.count; ++i) {
+    const btVector3 point = clipped[i] - normal * clipped.margin;
     const btScalar distance = normal.dot(point - reference[0]) - reference.margin;
     if (flipped) {
       points.add(point, -normal, distance);
@@ -125,12 +133,15 @@ void add_points(const ContactFeature& reference, ContactFeature& incident, bool 
 }
 
 struct Box {
-  btVector3 center;
-  btMatrix3x3 axes;  // columns
+  const btVector3& center;
+  const btMatrix3x3& axes;  // columns
   btVector3 half;
 
   Box(const btBoxShape& shape, const btTransform& pose)
-      : center(pose.getOrigin()), axes(pose.getBasis()), half(shape.getHalfExtentsWithMargin()) {}
+      : center(pose.getOrigin()), axes(pose.getBasis()), half(shape.getHalfExtentsWithoutMargin()) {
+    const btScalar margin = shape.getMarginNV();
+    half += btVector3(margin, margin, margin);
+  }
   btVector3 axis(int i) const { return axes.getColumn(i); }
 };
 
@@ -146,7 +157,11 @@ class BoxAlgorithm : public PairAlgorithm {
     const auto& shape_b = static_cast<const btBoxShape&>(*b->getCollisionShape());
     const Box box_a(shape_a, a->getWorldTransform());
     const Box box_b(shape_b, b->getWorldTransform());
-    const Axis axis = find_axis(box_a, box_b, points.reach());
+    if (apart_.separates(box_a, box_b, points)) {
+      points.finish();
+      return;
+    }
+    const Axis axis = find_axis(box_a, box_b, points, apart_);
     if (axis.kind == Axis::edges) {
       add_edges(box_a, box_b, axis, points);
     } else if (axis.kind != Axis::none) {
@@ -174,8 +189,34 @@ class BoxAlgorithm : public PairAlgorithm {
     int edge_b = 0;
   };
 
-  // None, if the boxes are farther apart than `reach`.
-  static Axis find_axis(const Box& a, const Box& b, btScalar reach) {
+  // An axis along which the boxes were apart: the most likely one to keep them apart in the next step.
+  struct Apart {
+    int a = kNone;  // axis of the first box
+    int b = kNone;  // of the second; the cross product if both
+
+    // Until the end of the step, by more than rounding: to try all axes would come to the same.
+    bool separates(const Box& first, const Box& second, const ContactManifold& points) const {
+      if (a == kNone && b == kNone) return false;
+      const btVector3 along = b == kNone   ? first.axis(a)
+                              : a == kNone ? second.axis(b)
+                                           : first.axis(a).cross(second.axis(b));
+      const btScalar radius =
+          (along * first.axes).absolute().dot(first.half) + (along * second.axes).absolute().dot(second.half);
+      const btScalar way = along.dot(second.center - first.center);
+      const btScalar length = a == kNone || b == kNone ? btScalar(1) : along.length();
+      return std::fabs(way) - radius - closing(way, along.dot(points.way())) > (points.turn_reach() + kBetter) * length;
+    }
+    static constexpr int kNone = -1;
+  };
+
+  // How much nearer two come in the step that are `between` from each other, and move by `way`.
+  static btScalar closing(btScalar between, btScalar way) { return std::max(between > 0 ? -way : way, btScalar(0)); }
+
+  // None, if an axis keeps the boxes apart until the end of the step: then `apart_along` is that axis.
+  static Axis find_axis(const Box& a, const Box& b, const ContactManifold& points, Apart& apart_along) {
+    const btScalar reach = points.turn_reach();
+    const btVector3 way_a = points.way() * a.axes;
+    const btVector3 way_b = points.way() * b.axes;
     const btMatrix3x3 turn = a.axes.transposeTimes(b.axes);  // axes of b, seen from a
     const btVector3 from_a = (b.center - a.center) * a.axes;
     const btVector3 from_b = (b.center - a.center) * b.axes;
@@ -184,14 +225,14 @@ class BoxAlgorithm : public PairAlgorithm {
     Axis best;
     for (int i = 0; i < 3; ++i) {
       const btScalar apart = std::fabs(from_a[i]) - a.half[i] - size[i].dot(b.half);
-      if (apart > reach) return {};
+      if (apart - closing(from_a[i], way_a[i]) > reach) return none_along(i, Apart::kNone, apart_along);
       if (apart > best.separation + (best.kind == Axis::none ? 0 : kBetter)) {
         best = {Axis::face_a, a.axis(i) * (from_a[i] > 0 ? btScalar(-1) : btScalar(1)), apart, 0, 0};
       }
     }
     for (int i = 0; i < 3; ++i) {
       const btScalar apart = std::fabs(from_b[i]) - b.half[i] - size.getColumn(i).dot(a.half);
-      if (apart > reach) return {};
+      if (apart - closing(from_b[i], way_b[i]) > reach) return none_along(Apart::kNone, i, apart_along);
       if (apart > best.separation + kBetter + kBetterPart * std::fabs(best.separation)) {
         best = {Axis::face_b, b.axis(i) * (from_b[i] > 0 ? btScalar(-1) : btScalar(1)), apart, 0, 0};
       }
@@ -209,10 +250,14 @@ class BoxAlgorithm : public PairAlgorithm {
         const btScalar along = from_a[i2] * turn[i1][k] - from_a[i1] * turn[i2][k];
         const btScalar radius_a = a.half[i1] * size[i2][k] + a.half[i2] * size[i1][k];
         const btScalar radius_b = b.half[k1] * size[i][k2] + b.half[k2] * size[i][k1];
+        const btScalar scaled = std::fabs(along) - radius_a - radius_b;  // times the sine
+        const btScalar least_now = best.kind == Axis::edges ? std::max(least, best.separation + kBetter) : least;
+        if (scaled <= std::min(least_now, btScalar(0))) continue;
         const btScalar inverse = 1 / std::sqrt(sine2);
-        const btScalar apart = (std::fabs(along) - radius_a - radius_b) * inverse;
-        if (apart > reach) return {};
-        if (apart > std::max(least, best.kind == Axis::edges ? best.separation + kBetter : least)) {
+        const btScalar apart = scaled * inverse;
+        const btScalar way = (way_a[i2] * turn[i1][k] - way_a[i1] * turn[i2][k]) * inverse;
+        if (apart - closing(along, way) > reach) return none_along(i, k, apart_along);
+        if (apart > least_now) {
           btVector3 normal = a.axis(i).cross(b.axis(k)) * inverse;
           if (normal.dot(b.center - a.center) > 0) normal = -normal;
           best = {Axis::edges, normal, apart, i, k};
@@ -220,6 +265,11 @@ class BoxAlgorithm : public PairAlgorithm {
       }
     }
     return best;
+  }
+
+  static Axis none_along(int a, int b, Apart& apart) {
+    apart = {a, b};
+    return {};
   }
 
   static void add_edges(const Box& a, const Box& b, const Axis& axis, ContactManifold& points) {
@@ -242,6 +292,8 @@ class BoxAlgorithm : public PairAlgorithm {
     if (axis.separation > 0 && beyond > kClipSlack) return;
     points.add(on_b + v * along_b, axis.normal, axis.separation);
   }
+
+  Apart apart_;
 };
 
 // The nearest points of two convex shapes.

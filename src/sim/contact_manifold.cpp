@@ -22,12 +22,11 @@ const btRigidBody* moving(const btCollisionObject* object) {
   return object->isStaticObject() ? nullptr : btRigidBody::upcast(object);
 }
 
-// Of any of its points; its box is at least as large as the part.
-btScalar bound_of_speed(const btRigidBody* body) {
-  if (body == nullptr) return 0;
-  const btBroadphaseProxy* box = body->getBroadphaseHandle();
-  const btScalar size = box == nullptr ? btScalar(0) : (box->m_aabbMax - box->m_aabbMin).length();
-  return body->getLinearVelocity().length() + body->getAngularVelocity().length() * size;
+// Upper bound of the speed of its points about its center, m/s; its box is at least as large as the part.
+btScalar turn_speed(const btRigidBody& body) {
+  const btBroadphaseProxy* box = body.getBroadphaseHandle();
+  if (box == nullptr) return 0;
+  return std::sqrt(body.getAngularVelocity().length2() * (box->m_aabbMax - box->m_aabbMin).length2());
 }
 
 // What solvers remember of a contact.
@@ -50,8 +49,14 @@ ContactManifold::ContactManifold(btPersistentManifold& manifold, btScalar h)
       b_(moving(manifold.getBody1())),
       h_(h),
       near_(std::min(kNear, manifold.getContactBreakingThreshold())),
+      turn_reach_(near_),
+      reach_(near_),
       ahead_(manifold.getContactProcessingThreshold() > 0) {
-  reach_ = near_ + (ahead_ ? (bound_of_speed(a_) + bound_of_speed(b_)) * h_ : 0);
+  if (!ahead_) return;
+  if (a_ != nullptr) way_ -= a_->getLinearVelocity() * h_;
+  if (b_ != nullptr) way_ += b_->getLinearVelocity() * h_;
+  turn_reach_ += ((a_ != nullptr ? turn_speed(*a_) : 0) + (b_ != nullptr ? turn_speed(*b_) : 0)) * h_;
+  reach_ = turn_reach_ + way_.length();
 }
 
 // How far the two come nearer to each other at a point in the step. What turns moves on a circle: without the second

@@ -20,6 +20,10 @@ class ContactManifold {
 
   /// Upper bound of how far apart points can be that touch within the step, m.
   btScalar reach() const { return reach_; }
+  /// The same, without the bodies' linear motion.
+  btScalar turn_reach() const { return turn_reach_; }
+  /// How far B moves in the step, seen from A, without turning, m; 0 if contacts begin only where surfaces touch.
+  const btVector3& way() const { return way_; }
   /// A point on the surface of B, `distance` (negative: depth) below that of A along the normal of B. Ignored if the
   /// two cannot meet within the step.
   void add(const btVector3& point_on_b, const btVector3& normal, btScalar distance);
@@ -47,6 +51,8 @@ class ContactManifold {
   const btRigidBody* b_;
   btScalar h_;
   btScalar near_;  // points at most this far apart are contacts even where nothing approaches
+  btVector3 way_{0, 0, 0};
+  btScalar turn_reach_;
   btScalar reach_;
   bool ahead_;  // whether contacts may begin before the surfaces touch; see Part::effect_surface
   int count_ = 0;

@@ -22,7 +22,7 @@ btCollisionObject& object(const btBroadphaseProxy& proxy) {
 }
 
 [[gnu::always_inline]] inline void ask_for_parts(const btBroadphasePair& pair, btManifoldArray& manifolds) {
-  constexpr std::size_t kUsed = 320;  // of an object: where it is, its shape, what it is like
+  constexpr std::size_t kUsed = 480;  // of a body: where it is, its shape, what it is like, its velocity
   prefetch(&object(*pair.m_pProxy0), kUsed);
   prefetch(&object(*pair.m_pProxy1), kUsed);
   manifolds.resizeNoInitialize(0);
