@@ -31,9 +31,6 @@ constexpr double kEasing = 0.95;
 /// Part of what locks took that they may give back, and the most of it, J.
 constexpr double kGivenBack = 0.75;
 constexpr double kMostGivenBack = 1e6;
-/// An island of at least so many trees with joints, none of more than so many bodies, is a crowd.
-constexpr int kCrowd = 4;
-constexpr int kSmallTree = 8;
 /// Faster than this no impulse of ours may make a body: m/s, rad/s.
 constexpr double kFastest = 1e5;
 /// More than this no step with contacts may give one, m/s: where laws contradict each other (a link that begins inside
@@ -311,17 +308,6 @@ bool IslandDirect::ease_bends(const IslandPools& pools, double h) {
   return changed;
 }
 
-// Many small trees that press on each other: sweeps do as well there, for less.
-bool IslandDirect::crowded(const IslandPools& pools) const {
-  int jointed = 0;
-  int largest = 0;
-  for (const Tree& t : trees_) {
-    if (link_of_[at(t.last - 1)] >= 0) jointed++;
-    largest = std::max(largest, t.last - t.first);
-  }
-  return jointed >= kCrowd && largest <= kSmallTree && pools.contacts.size() >= jointed;
-}
-
 bool IslandDirect::finite() const {
   for (int i = 0; i < static_cast<int>(body_of_.size()); ++i) {
     const Spatial& c = system_.change(i);
@@ -379,10 +365,6 @@ bool IslandDirect::solve(IslandPools pools, const btContactSolverInfo& info) {
   before_calm_.clear();
   effort_.begin();
   bool solved = build_forest(pools);
-  if (solved && crowded(pools)) {
-    counts_.plain++;
-    return false;
-  }
   if (solved && calm_whips(pools, h, Whips::before)) solved = build_forest(pools);
   if (solved) solved = settle_all(pools, h);
   // with no time left they wait for the next step

@@ -30,7 +30,7 @@ struct IslandPools {
 struct DirectCounts {
   std::uint64_t islands = 0;  ///< All of them; what is not `direct` is left to the iterative solver.
   std::uint64_t direct = 0;
-  std::uint64_t plain = 0;      ///< Left by rule: too many contacts, or a crowd of small trees.
+  std::uint64_t plain = 0;      ///< Left by rule: too many contacts.
   std::uint64_t fallbacks = 0;  ///< Not solved to the end.
 };
 
@@ -213,7 +213,6 @@ class IslandDirect {
   double gape();
   bool build_poses(const IslandPools& pools);
   void go_there(IslandPools& pools, const btContactSolverInfo& info) const;
-  bool crowded(const IslandPools& pools) const;
   bool finite() const;
   void write(IslandPools& pools);
   void take_residuals(const IslandPools& pools);
