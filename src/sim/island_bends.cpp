@@ -23,8 +23,8 @@ bool bends(const JointConstraint::Row& row) {
 }  // namespace
 
 // Locked rows hold rates at the start of the step; bodies go round. What the two sides will have parted by its end is
-// asked for beforehand, so that joints meet where bodies arrive. True when something changed.
-bool IslandDirect::bend_locks(const IslandPools& pools, double h) {
+// asked for beforehand, so that joints meet where bodies arrive. Returns the largest change, m; 0: nothing changed.
+double IslandDirect::bend_locks(const IslandPools& pools, double h) {
   double most = 0;
   for (Link& link : links_) {
     link.bend = bend_of(link, pools, h);
@@ -32,9 +32,16 @@ bool IslandDirect::bend_locks(const IslandPools& pools, double h) {
       if (bends(row)) most = std::max(most, std::fabs(link.bend[row.axis] - link.bent[row.axis]));
     }
   }
-  if (most <= (gyros_.empty() ? kLeastBend : kLeastFastBend)) return false;
+  if (most <= (gyros_.empty() ? kLeastBend : kLeastFastBend)) return 0;
   for (Link& link : links_) ask_for_bend(link, h);
-  return true;
+  return most;
+}
+
+void IslandDirect::straighten(double h) {
+  for (Link& link : links_) {
+    link.bend = Vec3(0);
+    ask_for_bend(link, h);
+  }
 }
 
 // Of the link's rows in a tree, or of those that close a loop.

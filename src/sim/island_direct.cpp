@@ -20,6 +20,8 @@ constexpr double kTurnGoal = 0.44;
 constexpr int kNarrowings = 2;
 /// So often bends are corrected.
 constexpr int kBends = 4;
+/// Bends that grow from pass to pass and are larger than this are given up, m.
+constexpr double kDivergingBend = 1e-3;
 /// Passes in which gyroscopic torques are corrected; and what is left of them then, relative to the angular velocity
 /// perpendicular to the spin, and to all of it.
 constexpr int kGyroPasses = 10;
@@ -36,15 +38,6 @@ constexpr double kFastest = 1e5;
 /// More than this no step with contacts may give one, m/s: where laws contradict each other (a link that begins inside
 /// of what never moves), to meet them all takes absurd impulses, and the sweeps, which miss them, do better.
 constexpr double kMostPush = 150;
-
-// What light bodies that strong motors drive do in free flight is wild, but no contradiction.
-bool contradicts(const TreeRows& system, int bodies, const IslandPools& pools) {
-  if (pools.contacts.size() == 0) return false;
-  for (int i = 0; i < bodies; ++i) {
-    if (glm::length(system.change(i).linear) > kMostPush) return true;
-  }
-  return false;
-}
 
 // The sweeps begin without the impulses of the step before, which only ours could hold in balance.
 void start_contacts_anew(IslandPools& pools) {
@@ -342,11 +335,20 @@ bool IslandDirect::bend_all(const IslandPools& pools, double h) {
   bool solved = true;
   bool bending = true;
   bool turning = true;
+  double least = kFastest;
   const auto time_left = [this] { return !effort_.over(settle_cost_); };
   collect_gyroscopes(pools, h);
   for (int pass = 0; solved && (bending || turning) && time_left(); ++pass) {
     turning = correct_gyroscopes(pools, h);
-    if (pass < kBends && bending) bending = bend_locks(pools, h);
+    if (pass < kBends && bending) {
+      const double bent = bend_locks(pools, h);
+      bending = bent > 0;
+      if (bent > kDivergingBend && bent > 2 * least) {
+        straighten(h);  // each bend asks for a larger one: joints are closed by poses instead
+        return settle() && (gapes_ = true);
+      }
+      least = std::min(least, bent);
+    }
     if (pass >= kBends && !turning) break;
     if (bending || turning) solved = settle();
   }
@@ -372,7 +374,7 @@ bool IslandDirect::solve(IslandPools pools, const btContactSolverInfo& info) {
     solved = build_forest(pools) && settle_all(pools, h);
   }
   if (solved) solved = bend_all(pools, h);
-  if (!solved || (!links_.empty() && contradicts(system_, static_cast<int>(body_of_.size()), pools))) {
+  if (!solved) {
     counts_.fallbacks++;
     forget_calm(pools);
     start_contacts_anew(pools);

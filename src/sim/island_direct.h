@@ -194,7 +194,8 @@ class IslandDirect {
   void forget_calm(IslandPools& pools) const;
   bool narrow_friction();
   bool limit_turns(const IslandPools& pools, double h);
-  bool bend_locks(const IslandPools& pools, double h);
+  double bend_locks(const IslandPools& pools, double h);
+  void straighten(double h);
   void ask_for_bend(Link& link, double h);
   Vec3 bend_of(const Link& link, const IslandPools& pools, double h);
   Turn turn_of(int body, const Vec3& w, const IslandPools& pools, double h) const;

@@ -220,10 +220,6 @@ bool IslandDirect::give_up_pinned() {
       if (pinned) given_up += give_up_gear(row);
       continue;
     }
-    if (row.contact == nullptr || row.normal >= 0 || box_.response(i, i) > kPinned * row.eases) continue;
-    for (const int tree : {tree_at(row.a.node), tree_at(row.b.node)}) {
-      if (tree >= 0) given_up += system_.give_up_all(trees_[at(tree)].first, trees_[at(tree)].last);
-    }
   }
   return given_up > 0;
 }

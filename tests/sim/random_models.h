@@ -80,7 +80,8 @@ class EnergyAccount {
         for (int axis = 0; axis < 6; axis++) {
           if (motor->mode(axis) == MotorMode::off) continue;
           const JointConstraint::Jacobian j = c.jacobian(axis);
-          axes_.push_back({&c, axis, &joint.parent().rigid(), &joint.child().rigid(), j, 0});
+          axes_.push_back({&c, axis, &joint.parent().rigid(), &joint.child().rigid(), j, 0, false, false});
+          set_stops(axes_.back());
           axes_.back().rate = rate(axes_.back());
         }
       }
@@ -92,6 +93,7 @@ class EnergyAccount {
     const Vec3 gravity = stage_.vec(stage_.world.id(), "gravity");
     double change = 0;
     double kinetic = 0;
+    double taken = 0;
     for (const Moving& m : moving_) {
       const double now = kinetic_energy(*m.part);
       kinetic += now;
@@ -102,22 +104,29 @@ class EnergyAccount {
     }
     for (const Axis& a : axes_) {
       const double load = a.axis < 3 ? a.joint->applied_force()[a.axis] : a.joint->applied_torque()[a.axis - 3];
+      if (load < 0 ? a.at_lower : a.at_upper) continue;  // motor and stop hold each other: neither does work
       const double work = load * h * (before_ * a.rate + (1 - before_) * rate(a));
       change -= work;
       worked_ += std::fabs(work);
+      taken += std::max(-work, 0.0);
     }
     rest_ += change;
+    above_ += change - taken;
     least_ = std::min(least_, rest_);
     if (rest_ - least_ > created_) {
       created_ = rest_ - least_;
       created_at_ = stage_.world.time();
     }
     most_kinetic_ = std::max(most_kinetic_, kinetic);
+    excess_ = std::max(excess_, above_);
   }
 
   /// The most that the unexplained energy grew above its least value so far, J; and when.
   double created() const { return created_; }
   double created_at() const { return created_at_; }
+  /// The most that the energy ever was above that of the start and all that motors and weight have given since, J. What
+  /// motors take counts as lost: where they strain against each other, they take what the repair of joints gives.
+  double excess() const { return excess_; }
   /// Unexplained energy so far, J.
   double rest() const { return rest_; }
   double most_kinetic() const { return most_kinetic_; }
@@ -137,7 +146,14 @@ class EnergyAccount {
     const btRigidBody* child;
     JointConstraint::Jacobian j;
     double rate;
+    bool at_lower, at_upper;
   };
+  static void set_stops(Axis& a) {
+    constexpr double kNear = 1e-2;
+    const AxisSettings& s = a.joint->axis(a.axis);
+    a.at_lower = s.limited() && a.joint->value(a.axis) < static_cast<double>(s.lower) + kNear;
+    a.at_upper = s.limited() && a.joint->value(a.axis) > static_cast<double>(s.upper) - kNear;
+  }
   static double rate(const Axis& a) {
     return static_cast<double>(a.j.linear.dot(a.child->getLinearVelocity() - a.parent->getLinearVelocity()) +
                                a.j.angular_a.dot(a.parent->getAngularVelocity()) +
@@ -150,6 +166,8 @@ class EnergyAccount {
   std::vector<Axis> axes_;
   double rest_ = 0;
   double least_ = 0;
+  double above_ = 0;
+  double excess_ = 0;
   double created_ = 0;
   double created_at_ = 0;
   double most_kinetic_ = 0;
@@ -406,6 +424,7 @@ struct RandomOutcome {
   bool finite = true;
   double created = 0;  ///< EnergyAccount::created(), J.
   double created_at = 0;
+  double excess = 0;  ///< EnergyAccount::excess(), J.
   double most_kinetic = 0;
   double worked = 0;
   double gap = 0;    ///< Largest joint gap, m.
@@ -443,6 +462,7 @@ inline RandomOutcome play_random_scene(std::uint64_t number, unsigned char fill,
   }
   out.created = energy.created();
   out.created_at = energy.created_at();
+  out.excess = energy.excess();
   out.most_kinetic = energy.most_kinetic();
   out.worked = energy.worked();
   out.fallbacks = static_cast<std::uint64_t>(scene.number(scene.world.id(), "solver_fallbacks"));
