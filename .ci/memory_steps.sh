@@ -112,3 +112,14 @@ long_twenty() {
   done < <(play_scene 200 tests/memory/joints.lua | awk 'NF == 3 && !known[$2]++ { print ++n, $2 }')
   while read -r name rest; do twenty "$name" $rest; done < <(memory_scenes)
 }
+
+# --long models: 10000 random scenes of each plan, played twice, and 200 of them under valgrind
+long_models() {
+  local log=build/check/valgrind_models.log rc
+  build_program && build build test_sim || return
+  LIMBER_RANDOM_MODELS=10000 test_seconds=3600 test_only='RandomModels.*' run_tests build sim
+  LIMBER_RANDOM_MODELS=200 timeout -k 10 3600 valgrind -q --smc-check=all-non-file --error-exitcode=9 \
+    --suppressions=tests/valgrind.supp build/test_sim --gtest_filter=RandomModels.AnythingGainsNoEnergy >"$log" 2>&1
+  rc=$?
+  if [ "$rc" = 0 ]; then pass; else fail "valgrind on 200 random scenes ended with code $rc (9: errors)" "$log"; fi
+}

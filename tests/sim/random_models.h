@@ -190,8 +190,8 @@ class RandomScene : public Stage {
     set(world.id(), "timestep", {1.0 / 240});
     substeps(1);
     if (!random_.chance(0.1)) gravity({0, 0, -9.81});
-    const bool iterative = random_.chance(0.08);
-    if ((iterative && plan.iterative) || !plan.direct) set(world.id(), "solver", {0});
+    iterative_ = (random_.chance(0.08) && plan.iterative) || !plan.direct;
+    if (iterative_) set(world.id(), "solver", {0});
     bouncing_ = random_.chance(0.15);
     wide_ = random_.chance(0.3);
     strong_ = random_.chance(0.4);
@@ -212,6 +212,7 @@ class RandomScene : public Stage {
     world.step();
   }
 
+  bool iterative() const { return iterative_; }
   /// Whether contacts and limits give back a part of the speed.
   bool bounces() const { return bouncing_; }
 
@@ -413,6 +414,7 @@ class RandomScene : public Stage {
   RandomPlan plan_;
   std::vector<Aimed> motors_;
   double lowest_ = 10;
+  bool iterative_ = false;
   bool bouncing_ = false;
   bool wide_ = false;    // masses over four decades
   bool strong_ = false;  // motors with the default force
@@ -421,6 +423,7 @@ class RandomScene : public Stage {
 
 /// What a played scene showed.
 struct RandomOutcome {
+  bool iterative = false;
   bool finite = true;
   double created = 0;  ///< EnergyAccount::created(), J.
   double created_at = 0;
@@ -447,6 +450,7 @@ inline RandomOutcome play_random_scene(std::uint64_t number, unsigned char fill,
   scene.world.settle();
   EnergyAccount energy(scene, scene.bounces());
   RandomOutcome out;
+  out.iterative = scene.iterative();
   const auto steps = static_cast<std::uint64_t>(std::lround(seconds * 240));
   for (; out.steps < steps && out.finite && out.health_events == 0; out.steps++) {
     fill_stack(fill);

@@ -4,7 +4,11 @@
 
 #include <malloc.h>
 
+#include <cstdio>
 #include <cstdlib>
+#include <string>
+
+#include <fmt/format.h>
 
 namespace limber::test {
 namespace {
@@ -26,28 +30,59 @@ RandomOutcome play_twice(std::uint64_t number, const RandomPlan& plan) {
   return first;
 }
 
-// Joints in trees, with all motors and limits.
-TEST(RandomModels, TreesWithoutContactsGainNoEnergy) {
-  RandomPlan plan;
-  plan.contacts = plan.loops = plan.iterative = false;
-  // scene 2 is left out: the energy that the account can't explain grows by 0.5 J a step there; the cause is not known
-  const std::uint64_t first = from_environment("LIMBER_RANDOM_FIRST", 3);
+/// What energy may exceed that of the start and all work since: motors that change a part's speed by tens of rad/s in
+/// a step leave an error of second order.
+double allowed_excess(const RandomOutcome& o) { return 0.02 * o.most_kinetic + 2e-3 * o.worked + 1e-3; }
+
+/// Plays some scenes of a plan, by default the first 12; in no more than one of 200, but in none of fewer, may energy
+/// come from nothing or a body become unstable. (Chains of very different masses that swing round in a few steps do.)
+void play_scenes(const RandomPlan& plan) {
+  const std::uint64_t first = from_environment("LIMBER_RANDOM_FIRST", 1);
   const std::uint64_t count = from_environment("LIMBER_RANDOM_MODELS", 12);
+  std::uint64_t missed = 0;
+  std::string which;
   for (std::uint64_t n = first; n < first + count; n++) {
     const RandomOutcome o = play_twice(n, plan);
-    // motors that change a part's speed by tens of rad/s in a step leave an error of second order
+    if ((n - first + 1) % 1000 == 0) std::printf("%llu scenes\n", static_cast<unsigned long long>(n - first + 1));
+    // loops that the iterative solver can't hold together are reported as instabilities, and meant to be
+    if (o.iterative || (o.excess <= allowed_excess(o) && o.health_events == 0)) continue;
+    missed++;
+    which += fmt::format("\nscene {}: {:.3g} J of {:.3g} J unexplained at {:.3f} s, {} instabilities", n, o.excess,
+                         o.most_kinetic, o.created_at, o.health_events);
+  }
+  EXPECT_LE(missed, count / 200) << which;
+  if (missed > 0) std::printf("%s\n", which.c_str());
+}
+
+TEST(RandomModels, TreesWithoutContactsGainNoEnergy) {
+  play_scenes({.contacts = false, .loops = false, .iterative = false});
+}
+
+TEST(RandomModels, TreesInContactGainNoEnergy) { play_scenes({.loops = false, .iterative = false}); }
+
+TEST(RandomModels, AnythingGainsNoEnergy) { play_scenes({}); }
+
+TEST(RandomModels, JointsOfTreesHoldTogether) {
+  for (std::uint64_t n = 1; n <= 12; n++) {
+    const RandomOutcome o = play_random_scene(n, 0, 2, {.contacts = false, .loops = false, .iterative = false});
     EXPECT_LE(o.created, 0.1 * o.most_kinetic + 1e-3) << "scene " << n << " at " << o.created_at << " s";
     EXPECT_LE(o.gap, 0.002) << "scene " << n;
     EXPECT_EQ(o.fallbacks, 0u) << "scene " << n;
-    EXPECT_EQ(o.health_events, 0u) << "scene " << n;
   }
 }
 
-TEST(RandomModels, AreFiniteAndDeterministic) {
-  const std::uint64_t first = from_environment("LIMBER_RANDOM_FIRST", 1);
-  const std::uint64_t count = from_environment("LIMBER_RANDOM_MODELS", 12);
-  for (std::uint64_t n = first; n < first + count; n++) play_twice(n, {});
+/// Scenes that once failed: 2, an account that took a motor at its stop for one that works; 26, 77, 93, 157, 282 and
+/// 400, passed joint limits against contacts; 66 and 186, uninitialized variables; 5749, bends that grew.
+class FormerFailure : public ::testing::TestWithParam<std::uint64_t> {};
+
+TEST_P(FormerFailure, Passes) {
+  const RandomOutcome o = play_twice(GetParam(), {.iterative = false});
+  EXPECT_LE(o.excess, allowed_excess(o));
+  EXPECT_EQ(o.health_events, 0u);
+  EXPECT_EQ(o.fallbacks, 0u);
 }
+
+INSTANTIATE_TEST_SUITE_P(RandomModels, FormerFailure, ::testing::Values(2, 26, 66, 77, 93, 157, 186, 282, 400, 5749));
 
 // A servo of 10 N·m drops what it lifts: the account sees the work of neither motor nor weight as gain, and that of a
 // hidden impulse.
