@@ -364,6 +364,7 @@ bool IslandDirect::solve(IslandPools pools, const btContactSolverInfo& info) {
     return false;
   }
   const double h = static_cast<double>(info.m_timeStep);
+  step_ = h;
   before_calm_.clear();
   effort_.begin();
   bool solved = build_forest(pools);

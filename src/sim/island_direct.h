@@ -142,6 +142,7 @@ class IslandDirect {
   Spatial velocity(int body, const IslandPools& pools) const;
   Spatial solved_velocity(int body, const IslandPools& pools) const;
   static SpatialInertia inertia_of(const btRigidBody& body);
+  void add_geometric_inertia(TreeNode& node, int body);
   static void float_free(TreeNode& node);
   /// The node hangs on the joint, as parts stand now; forward: the joint's child is the node. False: a singular pose.
   static bool hang(TreeNode& node, const JointConstraint& joint, bool forward);
@@ -267,6 +268,8 @@ class IslandDirect {
   double settle_cost_ = 0;  // of the last settle()
   std::vector<Gyro> gyros_;
   int gyro_passes_ = 0;
+  std::vector<unsigned char> touched_;        // by solver body: whether it has contacts
+  double step_ = 0;                           // length of the step that is being solved, s
   bool gapes_ = false;                        // perhaps: bends do not fit yet, or do not know of so wide a turn
   TreeRows poses_{effort_};                   // the trees where the step will end
   std::vector<Pose> ends_;                    // node: there

@@ -86,6 +86,7 @@ void JointConstraint::reset(const Vec3& near) {
   motor_impulse_.fill(0);
   repair_impulse_.fill(0);
   last_impulse_.fill(0);
+  pull_.fill(0);
   tree_memory_.fill(0);
   taken_by_locks_ = 0;
   tick_impulse_.fill(0);

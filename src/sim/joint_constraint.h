@@ -64,6 +64,10 @@ class JointConstraint : public btTypedConstraint {
   /// Of these settings only where to and how fast: servo target, spring's rest, velocity. The next tick reaches a new
   /// target or rest at a constant speed (AxisGoals). Returns whether one changed.
   bool set_goal(int axis, double target, double rest, double velocity);
+  /// Whether a motor or spring is on.
+  bool drives() const {
+    return std::any_of(axes_.begin(), axes_.end(), [](const AxisSettings& s) { return s.drive != AxisDrive::off; });
+  }
   const AxisSettings& axis(int axis) const { return axes_[static_cast<std::size_t>(axis)]; }
   /// Targets and rests in force are those set, from the next step on, without a way from those before.
   void restart_goals() { goals_.restart(); }
@@ -155,6 +159,9 @@ class JointConstraint : public btTypedConstraint {
   const btVector3& arm_b() const { return arm_b_; }
   const btVector3& linear_axis(int i) const { return axis_a_[static_cast<std::size_t>(i)]; }
   const btVector3& dual_axis(int i) const { return dual_[static_cast<std::size_t>(i)]; }
+  /// Impulse of its linear locks on the child in an internal step, N·s, world: of the last one, where it was weaker
+  /// than before, else rising to it within some steps.
+  btVector3 pull() const { return axis_a_[0] * pull_[0] + axis_a_[1] * pull_[1] + axis_a_[2] * pull_[2]; }
   /// What TreeRows remembers of this joint from step to step.
   TreeMemory& tree_memory() { return tree_memory_; }
   /// What the locks of the tree that begins here have taken from it, J, >= 0: they may give it back.
@@ -228,6 +235,7 @@ class JointConstraint : public btTypedConstraint {
   std::array<float, 6> previous_rate_{};
   std::array<float, 6> motor_impulse_{};  // of the last internal step
   std::array<float, 6> last_impulse_{};   // of locks and motors, by axis
+  std::array<float, 3> pull_{};           // along the parent-side axes; see pull()
   std::array<float, 7> warm_{};
   TreeMemory tree_memory_{};
   double taken_by_locks_ = 0;

@@ -8,6 +8,9 @@
 namespace limber {
 namespace {
 
+/// A pull that becomes stronger counts by this part of the difference more in each step: an impact does not.
+constexpr float kPullRise = 0.125F;
+
 constexpr btScalar kInfinity = SIMD_INFINITY;
 /// A limit gets a row when it is nearer than this plus two steps' way: rad, m.
 constexpr btScalar kAngularMargin = btScalar(0.05);
@@ -141,6 +144,10 @@ void JointConstraint::plan_rows() {
   for (int r = start; r < row_count_; ++r) {
     const Row& row = rows_[r];
     warm_[at(r - start)] = std::clamp(kWarmStart * last_impulse_[row.axis], row.lower, row.upper);
+  }
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const float more = last_impulse_[axis] - pull_[axis];
+    pull_[axis] += more * pull_[axis] >= 0 ? more * kPullRise : more;
   }
   last_impulse_.fill(0);
   motor_impulse_.fill(0);
