@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <functional>
+#include <ostream>
 
 #include "sim/arm.h"
 #include "sim/dispatcher.h"
@@ -111,6 +112,8 @@ struct Influence {
   const char* name;
   std::function<void(Resting&)> act;
   bool arm = false;  // else the stack
+
+  friend void PrintTo(const Influence& influence, std::ostream* out) { *out << influence.name; }
 };
 
 const std::vector<Influence>& influences() {
