@@ -124,9 +124,12 @@ Json bullet_phases(BenchArms& arms, int ticks) {
 
 }  // namespace
 
+int default_iterations() { return static_cast<int>(World::table().at("solver_iterations").initial[0]); }
+
 ArmScene bench_arm_scene(int arms) {
   ArmScene scene;
   scene.arms = arms;
+  scene.solver_iterations = default_iterations();
   return scene;
 }
 

@@ -43,7 +43,9 @@ class BenchArms {
   double heap_when_empty_ = 0;
 };
 
-/// The scene of so many arms: 1/60 s, 4 substeps, 10 solver iterations.
+/// The default of sim.solver_iterations.
+int default_iterations();
+/// The scene of so many arms: 1/60 s, 4 substeps.
 ArmScene bench_arm_scene(int arms);
 /// The same with the direct solver, which needs one internal step a tick alone.
 ArmScene direct_arm_scene(int arms);

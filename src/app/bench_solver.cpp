@@ -9,6 +9,7 @@
 
 #include <fmt/format.h>
 
+#include "app/bench_arms.h"
 #include "app/bench_times.h"
 #include "sim/raw_machines.h"
 
@@ -87,8 +88,9 @@ Json play(const RawScene& scene, int steps, double seconds = 6) {
   return out;
 }
 
-// Contacts above all: the second half of the steps is timed.
-Json play_crowd(const RawScene& scene, int steps) {
+// Contacts above all: the second half of the steps is timed. Both sweep as often as the program does by default.
+Json play_crowd(RawScene scene, int steps) {
+  scene.iterations = default_iterations();
   Side stock(scene, RawSolver::stock);
   Side ours(scene, RawSolver::direct);
   for (int i = 0; i < steps; ++i) {

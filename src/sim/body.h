@@ -108,8 +108,7 @@ class Body {
   std::span<Joint* const> followers() const { return followers_; }
   /// Readouts of its parts and joints. [any thread, while nobody else is at this body]
   void tell();
-  /// After tell(): logs springs that are held at less than they were told, targets outside limits and clamped
-  /// rotations, once each.
+  /// After tell(): logs, once each, springs whose stiffness is capped, targets outside limits and clamped rotations.
   void say_caps();
   /// Logs followers that something holds away from where their leader puts them, once each.
   void report_slips() const;

@@ -1,4 +1,4 @@
-// Choice of the points of a manifold, and what they inherit from the step before.
+// Reduces the contact points of a step to at most four, and carries impulses over from the step before.
 #include "sim/contact_manifold.h"
 
 #include <algorithm>

@@ -1,4 +1,5 @@
-// What a pair looks at hangs together by pointers, so it is asked for in three goes, each when the one before is there.
+// Data of a pair is reached through chains of pointers, so it is prefetched in three stages, each when the one before has
+// arrived.
 #include "sim/dispatcher.h"
 
 #include "sim/contact_manifold.h"

@@ -21,9 +21,9 @@ namespace limber {
   prefetch(&manifold, static_cast<std::size_t>(manifold.getNumContacts()) * sizeof(btManifoldPoint));
 }
 
-/// Bullet's, with contact algorithms of our own; a pair which was made may collide, and what a pair is about to look at
-/// is asked for while those before it are at work: a pair has two parts, two shapes and a kilobyte of contact points,
-/// which a large scene has thrown out of the caches since the last step. [sim]
+/// Bullet's dispatcher with contact algorithms of our own. Pairs that exist may collide: filters apply when pairs are
+/// made. Prefetches the data of the next pairs while one is processed: a pair has two parts, two shapes and a kilobyte of
+/// contact points, which are no longer in the cache in a large scene. [sim]
 class Dispatcher : public btCollisionDispatcher {
  public:
   BT_DECLARE_ALIGNED_ALLOCATOR();
