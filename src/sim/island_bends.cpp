@@ -26,6 +26,7 @@ bool bends(const JointConstraint::Row& row) {
 // asked for beforehand, so that joints meet where bodies arrive. Returns the largest change, m; 0: nothing changed.
 double IslandDirect::bend_locks(const IslandPools& pools, double h) {
   double most = 0;
+  predict_turns(pools, h);
   for (Link& link : links_) {
     link.bend = bend_of(link, pools, h);
     for (const JointConstraint::Row& row : link.joint->planned()) {
@@ -59,14 +60,28 @@ void IslandDirect::ask_for_bend(Link& link, double h) {
   link.bent = link.bend;
 }
 
+// Once for each body, since most have two joints.
+void IslandDirect::predict_turns(const IslandPools& pools, double h) {
+  way_.resize(body_of_.size());
+  for (std::size_t i = 0; i < body_of_.size(); ++i) way_[i] = way_of(body_of_[i], pools, h);
+}
+
+IslandDirect::Way IslandDirect::way_of(int body, const IslandPools& pools, double h) const {
+  const Spatial v = solved_velocity(body, pools);
+  const Turn turn = turn_of(body, v.angular, pools, h);
+  return {v, turn.shift(v.linear, h), turn.rotation(h), turn.clamped(h) > 0};
+}
+
 // How far the two sides of a joint will part in this step, beyond what its rows know, along the parent-side axes, m.
 Vec3 IslandDirect::bend_of(const Link& link, const IslandPools& pools, double h) {
   const JointConstraint& joint = *link.joint;
-  const Spatial a = solved_velocity(link.body_a, pools);
-  const Spatial b = solved_velocity(link.body_b, pools);
-  const Turn turn_of_a = turn_of(link.body_a, a.angular, pools, h);
-  const Turn turn_of_b = turn_of(link.body_b, b.angular, pools, h);
-  if (turn_of_a.clamped(h) > 0 || turn_of_b.clamped(h) > 0) {
+  const auto way = [&](int body) {
+    const int node = node_of_[at(body)];
+    return node < 0 ? way_of(body, pools, h) : way_[at(node)];
+  };
+  const Way a = way(link.body_a);
+  const Way b = way(link.body_b);
+  if (a.clamped || b.clamped) {
     gapes_ = true;
     return link.bent;
   }
@@ -75,14 +90,12 @@ Vec3 IslandDirect::bend_of(const Link& link, const IslandPools& pools, double h)
   Vec3 gap(0);
   for (int k = 0; k < 3; ++k) gap += from_bt(joint.linear_axis(k)) * joint.value(k);
   const Vec3 own_arm = arm_a - gap;
-  const Quat turn_a = turn_of_a.rotation(h);
-  const Vec3 parted = gap + turn_of_b.shift(b.linear, h) - turn_of_a.shift(a.linear, h) +
-                      (turn_of_b.rotation(h) * arm_b - arm_b) - (turn_a * own_arm - own_arm);
-  const Vec3 drift = carried(b, arm_b).linear - carried(a, arm_a).linear;
+  const Vec3 parted = gap + b.shift - a.shift + (b.rotation * arm_b - arm_b) - (a.rotation * own_arm - own_arm);
+  const Vec3 drift = carried(b.velocity, arm_b).linear - carried(a.velocity, arm_a).linear;
   Vec3 bend(0);
   for (int k = 0; k < 3; ++k) {
     const Vec3 axis = from_bt(joint.linear_axis(k));
-    bend[k] = std::clamp(glm::dot(turn_a * axis, parted) - glm::dot(axis, gap + drift * h), -kFastestBend * h,
+    bend[k] = std::clamp(glm::dot(a.rotation * axis, parted) - glm::dot(axis, gap + drift * h), -kFastestBend * h,
                          kFastestBend * h);
   }
   return bend;

@@ -150,6 +150,7 @@ bool IslandDirect::limit_turns(const IslandPools& pools, double h) {
     double fastest = 0;
     for (int i = t.first; i < t.last; ++i) {
       const Spatial v = velocity(body_of_[at(i)], pools) + system_.change(i);
+      if (glm::dot(v.angular, v.angular) * h * h <= kMostTurn * kMostTurn) continue;
       const double turn = glm::length(turn_of(body_of_[at(i)], v.angular, pools, h).rest);
       if (t.last - t.first > 1 || link_of_[at(i)] >= 0) fastest = std::max(fastest, turn);
       if (turn * h > kMostTurn) note_clamp(*pools.bodies[body_of_[at(i)]].m_originalBody, turn - kTurnGoal / h);

@@ -97,6 +97,12 @@ class IslandDirect {
     unsigned held;
     std::array<double, 6> conductance;
   };
+  struct Way {  // of a body in the step, by the velocity that was found
+    Spatial velocity;
+    Vec3 shift;
+    Quat rotation;
+    bool clamped;  // its rotation is
+  };
   struct Gyro {  // the gyroscopic impulse on a fast body of a tree with joints, N·m·s
     int node;
     double scale;                         // of its moment of inertia, kg·m²
@@ -190,6 +196,7 @@ class IslandDirect {
   bool bend_all(const IslandPools& pools, double h);
   enum class Whips : std::uint8_t { before, after };  // as the step began; as it was solved
   bool calm_whips(IslandPools& pools, double h, Whips which);
+  Vec3 angular_velocity(int node, const IslandPools& pools, Whips which) const;
   Spatial moving(int node, const IslandPools& pools, Whips which, double h) const;
   Rigid motion_of(const Tree& tree, const IslandPools& pools, Whips which, double h) const;
   void forget_calm(IslandPools& pools) const;
@@ -198,6 +205,8 @@ class IslandDirect {
   double bend_locks(const IslandPools& pools, double h);
   void straighten(double h);
   void ask_for_bend(Link& link, double h);
+  void predict_turns(const IslandPools& pools, double h);
+  Way way_of(int body, const IslandPools& pools, double h) const;
   Vec3 bend_of(const Link& link, const IslandPools& pools, double h);
   Turn turn_of(int body, const Vec3& w, const IslandPools& pools, double h) const;
   bool drives_spin(const Link& link, int axis, const IslandPools& pools, double h) const;
@@ -269,6 +278,7 @@ class IslandDirect {
   std::vector<Gyro> gyros_;
   int gyro_passes_ = 0;
   std::vector<unsigned char> touched_;        // by solver body: whether it has contacts
+  std::vector<Way> way_;                      // by node
   double step_ = 0;                           // length of the step that is being solved, s
   bool gapes_ = false;                        // perhaps: bends do not fit yet, or do not know of so wide a turn
   TreeRows poses_{effort_};                   // the trees where the step will end

@@ -18,6 +18,12 @@ Vec3 center_of(const btRigidBody& body) { return from_bt(body.getCenterOfMassPos
 
 }  // namespace
 
+Vec3 IslandDirect::angular_velocity(int node, const IslandPools& pools, Whips which) const {
+  const int body = body_of_[at(node)];
+  if (which == Whips::after) return solved_velocity(body, pools).angular;
+  return from_bt(pools.bodies[body].m_angularVelocity);
+}
+
 // Without the spin of the body.
 Spatial IslandDirect::moving(int node, const IslandPools& pools, Whips which, double h) const {
   const int body = body_of_[at(node)];
@@ -58,9 +64,13 @@ IslandDirect::Rigid IslandDirect::motion_of(const Tree& tree, const IslandPools&
 bool IslandDirect::calm_whips(IslandPools& pools, double h, Whips which) {
   bool changed = false;
   for (const Tree& t : trees_) {
-    double fastest = 0;
-    for (int i = t.first; i < t.last; ++i) fastest = std::max(fastest, glm::length(moving(i, pools, which, h).angular));
     if (t.last - t.first == 1 && link_of_[at(t.first)] < 0) continue;
+    double fastest = 0;
+    for (int i = t.first; i < t.last; ++i) {
+      const Vec3 w = angular_velocity(i, pools, which);
+      if (glm::dot(w, w) * h * h <= kTurnClamp * kTurnClamp) continue;
+      fastest = std::max(fastest, glm::length(moving(i, pools, which, h).angular));
+    }
     if (!(fastest * h > kMore * kTurnClamp)) continue;
     const Rigid rigid = motion_of(t, pools, which, h);
     fastest = 0;

@@ -199,10 +199,35 @@ double Turn::clamped(double h) const {
   return angle <= kTurnClamp ? 0 : angle - held_turn(angle);
 }
 
+namespace {
+
+// Most fast bodies are links between two joints: whatever axis goes through a pivot away from the center of mass has
+// its direction, about which they hardly rotate.
+bool may_spin(const btRigidBody& body, const Vec3& w, double h) {
+  if (body.getNumConstraintRefs() < 2) return true;  // a motor may spin it about an axis beside its center of mass
+  const btVector3& inverse = body.getInvInertiaDiagLocal();
+  const auto least = static_cast<double>(inverse[inverse.minAxis()]);
+  const double reach2 = kBalanced * kBalanced * static_cast<double>(body.getInvMass()) / least;
+  Vec3 pivot(0);
+  int joints = 0;
+  for_each_joint(body, [&](const JointSide& side) {
+    joints++;
+    if (squared(side.pivot()) > std::max(squared(pivot), reach2)) pivot = side.pivot();
+  });
+  const double distance2 = squared(pivot);
+  if (joints < 2 || !(distance2 > 0)) return true;
+  const Vec3 local = from_bt(to_bt(w) * body.getWorldTransform().getBasis());
+  const double about = std::fabs(glm::dot(local, pivot)) + std::sqrt(squared(w) * reach2);
+  return about * about * h * h > kSlowTurn * kSlowTurn * distance2;
+}
+
+}  // namespace
+
 Turn split_turn(const btRigidBody& body, const Vec3& w, double h) {
   Turn turn;
   turn.rest = w;
   if (!(squared(w) * h * h > kSlowTurn * kSlowTurn) || !is_finite(w)) return turn;
+  if (!may_spin(body, w, h)) return turn;
   const Vec3 moments = moments_of(body);
   if (moments.x == 0 || moments.y == 0 || moments.z == 0 || joint_count(body) == 0) return turn;
   const Mat3 to_world = glm::mat3_cast(from_bt(body.getWorldTransform().getRotation()));
