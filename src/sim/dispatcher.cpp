@@ -1,5 +1,5 @@
-// Data of a pair is reached through chains of pointers, so it is prefetched in three stages, each when the one before has
-// arrived.
+// Data of a pair is reached through chains of pointers, so it is prefetched in three stages, each when the one before
+// has arrived.
 #include "sim/dispatcher.h"
 
 #include "sim/contact_manifold.h"

@@ -22,8 +22,8 @@ namespace limber {
 }
 
 /// Bullet's dispatcher with contact algorithms of our own. Pairs that exist may collide: filters apply when pairs are
-/// made. Prefetches the data of the next pairs while one is processed: a pair has two parts, two shapes and a kilobyte of
-/// contact points, which are no longer in the cache in a large scene. [sim]
+/// made. Prefetches the data of the next pairs while one is processed: a pair has two parts, two shapes and a kilobyte
+/// of contact points, which are no longer in the cache in a large scene. [sim]
 class Dispatcher : public btCollisionDispatcher {
  public:
   BT_DECLARE_ALIGNED_ALLOCATOR();
