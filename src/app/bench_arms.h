@@ -45,7 +45,7 @@ class BenchArms {
 
 /// The default of sim.solver_iterations.
 int default_iterations();
-/// The scene of so many arms: 1/60 s, 4 substeps.
+/// A scene with this many arms: ticks of 1/60 s, 4 substeps.
 ArmScene bench_arm_scene(int arms);
 /// The same with the direct solver, which needs one internal step a tick alone.
 ArmScene direct_arm_scene(int arms);

@@ -88,7 +88,8 @@ Json play(const RawScene& scene, int steps, double seconds = 6) {
   return out;
 }
 
-// Contacts above all: the second half of the steps is timed. Both sweep as often as the program does by default.
+// The second half of the steps, which has most contacts, is timed. Both solvers do the program's default number of
+// iterations.
 Json play_crowd(RawScene scene, int steps) {
   scene.iterations = default_iterations();
   Side stock(scene, RawSolver::stock);

@@ -7,10 +7,10 @@
 namespace limber {
 namespace {
 
-/// Time constant of a filter stage: the first is a fraction of the smoothing time, to which the second, in ticks, is
-/// added, since a tick sees only the newest target. Streams at 25 to 100 Hz with 5 ms of jitter then vary by at most 8
-/// % in speed at a smoothing time of two stream periods (measured at 60 ticks a second; 10 % is the requirement). The
-/// delay of a ramp is three stages.
+/// The time constant of a filter stage is kStagePart times the smoothing time, plus kStageTicks ticks, since a tick
+/// sees only the newest target. The speed of streams at 25 to 100 Hz with 5 ms of jitter then varies by at most 8 % at
+/// a smoothing time of two stream periods (measured at 60 ticks a second; required: 10 %). A ramp is delayed by three
+/// stages.
 constexpr double kStagePart = 0.5;
 constexpr double kStageTicks = 1.5;
 /// Nearer than this to its target, m or rad, the filter is at rest.

@@ -14,7 +14,7 @@ namespace {
 /// Among others that would cost more, since contacts are looked for with all that a box meets. What jumps by more than
 /// its own size will not jump on.
 constexpr btScalar kStepsAhead = 2;
-/// A box is extended along its object's motion by at most this, m: contacts can't stop what is faster.
+/// Largest extension of a box along its object's motion in a step, m. Contacts can't stop faster objects.
 constexpr btScalar kFarthestAhead = 10;
 /// So many ahead the memory of what has left its box is asked for, and then of its place in the tree: who looked at it,
 /// or moved it, may have been another processor.

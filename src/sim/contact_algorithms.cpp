@@ -82,7 +82,7 @@ class PlaneAlgorithm : public PairAlgorithm {
   bool plane_first_;
 };
 
-// What of a polygon, or a segment, is not outside of the plane through `from` with this outward normal.
+// The part of a polygon, segment or point that is inside of the plane through `from` with this outward normal.
 void cut(const ContactFeature& whole, const btVector3& from, const btVector3& outward, ContactFeature& part) {
   part.count = 0;
   const int sides = whole.count > 2 ? whole.count : whole.count - 1;
@@ -99,7 +99,8 @@ void cut(const ContactFeature& whole, const btVector3& from, const btVector3& ou
   }
 }
 
-// Clips a polygon, or a segment, against the sides of the reference face. The result is one of the two features given.
+// Clips a polygon, segment or point against the sides of the reference face. `incident` is overwritten; the result is
+// `incident` or `spare`.
 const ContactFeature& clip(const ContactFeature& reference, ContactFeature& incident, ContactFeature& spare) {
   spare.normal = incident.normal;
   spare.margin = incident.margin;
@@ -189,12 +190,12 @@ class BoxAlgorithm : public PairAlgorithm {
     int edge_b = 0;
   };
 
-  // An axis along which the boxes were apart: the most likely one to keep them apart in the next step.
+  // The axis that separated the boxes in the last step: it most likely does so in the next one, too.
   struct Apart {
     int a = kNone;  // axis of the first box
     int b = kNone;  // of the second; the cross product if both
 
-    // Until the end of the step, by more than rounding: to try all axes would come to the same.
+    // Whether it separates them until the end of the step, by more than rounding errors: find_axis() would find none.
     bool separates(const Box& first, const Box& second, const ContactManifold& points) const {
       if (a == kNone && b == kNone) return false;
       const btVector3 along = b == kNone   ? first.axis(a)
@@ -209,7 +210,7 @@ class BoxAlgorithm : public PairAlgorithm {
     static constexpr int kNone = -1;
   };
 
-  // How much nearer two come in the step that are `between` from each other, and move by `way`.
+  // By how much a distance `between` along an axis shrinks when the second box moves by `way` along it.
   static btScalar closing(btScalar between, btScalar way) { return std::max(between > 0 ? -way : way, btScalar(0)); }
 
   // None, if an axis keeps the boxes apart until the end of the step: then `apart_along` is that axis.

@@ -38,6 +38,7 @@ double IslandDirect::bend_locks(const IslandPools& pools, double h) {
   return most;
 }
 
+// Takes all bends back.
 void IslandDirect::straighten(double h) {
   for (Link& link : links_) {
     link.bend = Vec3(0);
@@ -60,7 +61,7 @@ void IslandDirect::ask_for_bend(Link& link, double h) {
   link.bent = link.bend;
 }
 
-// Once for each body, since most have two joints.
+// The motion of each body in the step, computed once, though most bodies have two joints.
 void IslandDirect::predict_turns(const IslandPools& pools, double h) {
   way_.resize(body_of_.size());
   for (std::size_t i = 0; i < body_of_.size(); ++i) way_[i] = way_of(body_of_[i], pools, h);

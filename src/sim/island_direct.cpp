@@ -20,7 +20,7 @@ constexpr double kTurnGoal = 0.44;
 constexpr int kNarrowings = 2;
 /// So often bends are corrected.
 constexpr int kBends = 4;
-/// Bends that grow from pass to pass and are larger than this are given up, m.
+/// Bends are taken back when a correction is larger than this, m, and more than twice as large as an earlier one.
 constexpr double kDivergingBend = 1e-3;
 /// Passes in which gyroscopic torques are corrected; and what is left of them then, relative to the angular velocity
 /// perpendicular to the spin, and to all of it.
@@ -35,9 +35,6 @@ constexpr double kGivenBack = 0.75;
 constexpr double kMostGivenBack = 1e6;
 /// Faster than this no impulse of ours may make a body: m/s, rad/s.
 constexpr double kFastest = 1e5;
-/// More than this no step with contacts may give one, m/s: where laws contradict each other (a link that begins inside
-/// of what never moves), to meet them all takes absurd impulses, and the sweeps, which miss them, do better.
-constexpr double kMostPush = 150;
 
 // The sweeps begin without the impulses of the step before, which only ours could hold in balance.
 void start_contacts_anew(IslandPools& pools) {
@@ -97,7 +94,7 @@ bool IslandDirect::settle_outer() {
     double missed = 0;
     do {
       if (!build_responses()) return false;
-      pinned = give_up_pinned();
+      pinned = give_up_pinned_gears();
       missed = pinned ? 0 : solve_outer(Solve::anew);
     } while (!pinned && take_contacts() > 0);
     int broken = pinned ? 1 : give_up_broken();
@@ -345,8 +342,9 @@ bool IslandDirect::bend_all(const IslandPools& pools, double h) {
       const double bent = bend_locks(pools, h);
       bending = bent > 0;
       if (bent > kDivergingBend && bent > 2 * least) {
-        straighten(h);  // each bend asks for a larger one: joints are closed by poses instead
-        return settle() && (gapes_ = true);
+        straighten(h);  // the gap that is left is closed afterwards, by moving the bodies
+        gapes_ = true;
+        return settle();
       }
       least = std::min(least, bent);
     }

@@ -50,8 +50,8 @@ class IslandDirect {
   /// A gear with its row planned, and the solver body of each of its sides.
   void add_gear(GearConstraint& gear, const std::array<int, 4>& bodies) { gears_.push_back({&gear, bodies, 0}); }
   int joint_count() const { return static_cast<int>(links_.size()); }
-  /// False when the plain solver has to do it, with nothing written; where what was found is absurd, impulses of the
-  /// step before are taken back, too.
+  /// False when the iterative solver has to do it, with nothing written; after a failed attempt, impulses of the step
+  /// before are taken back, too.
   bool solve(IslandPools pools, const btContactSolverInfo& info);
 
   const DirectCounts& counts() const { return counts_; }
@@ -148,6 +148,7 @@ class IslandDirect {
   Spatial velocity(int body, const IslandPools& pools) const;
   Spatial solved_velocity(int body, const IslandPools& pools) const;
   static SpatialInertia inertia_of(const btRigidBody& body);
+  void mark_acted_on(const IslandPools& pools);
   void add_geometric_inertia(TreeNode& node, int body);
   static void float_free(TreeNode& node);
   /// The node hangs on the joint, as parts stand now; forward: the joint's child is the node. False: a singular pose.
@@ -183,7 +184,7 @@ class IslandDirect {
   int released_with(const OuterRow& row) const;
   static Pull pull_on(const OuterRow& row);
   void answer(const Pull& to, std::span<double> rows, std::span<double> axes);
-  bool give_up_pinned();
+  bool give_up_pinned_gears();
   int give_up_gear(OuterRow& row);
   int give_up_touched();
   int give_up_broken();
@@ -235,7 +236,7 @@ class IslandDirect {
   /// What outer rows may miss, m/s and rad/s, when they count as solved; and when they still will do.
   static constexpr double kOuterTolerance = 1e-6;
   static constexpr double kOuterMiss = 1e-2;
-  /// A contact is pinned when it answers to less than this part of what its bodies alone would.
+  /// A gear is pinned if its response is below this part of that of its bodies alone.
   static constexpr double kPinned = 1e-6;
 
   Effort effort_;
@@ -277,7 +278,7 @@ class IslandDirect {
   double settle_cost_ = 0;  // of the last settle()
   std::vector<Gyro> gyros_;
   int gyro_passes_ = 0;
-  std::vector<unsigned char> touched_;        // by solver body: whether it has contacts
+  std::vector<unsigned char> acted_on_;       // by solver body: whether it has contacts, drives or gears
   std::vector<Way> way_;                      // by node
   double step_ = 0;                           // length of the step that is being solved, s
   bool gapes_ = false;                        // perhaps: bends do not fit yet, or do not know of so wide a turn

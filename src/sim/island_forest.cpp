@@ -27,8 +27,8 @@ bool plain_body(const btRigidBody& body) {
          body.getAngularFactor() == one;
 }
 
-/// A stiffness against rotation times the square of the step, as part of the inertia: more than the first is unstable,
-/// and is reduced to the second.
+/// Stiffness against rotation, times the square of the step, relative to the moment of inertia: above the first value
+/// the inertia is increased until the ratio is the second. (An explicit step is unstable above 4.)
 constexpr double kUnstable = 4;
 constexpr double kStable = 2;
 
@@ -89,26 +89,33 @@ SpatialInertia IslandDirect::inertia_of(const btRigidBody& body) {
   return {1 / static_cast<double>(body.getInvMass()), world_inertia(body)};
 }
 
-// A joint that pulls at a body turns its arm into the direction of the pull, like a pendulum. The step treats this
-// stiffness explicitly: where it would oscillate too fast for that, as in a rope of light links with a heavy end, the
-// body gets the rotational inertia with which it doesn't. (Geometric stiffness: Andrews, Teichmann and Kry 2017.) Not
-// of bodies that motors, gears or contacts act on: with an inertia that changes, these would do work.
-void IslandDirect::add_geometric_inertia(TreeNode& node, int body) {
-  const auto joint_at = [&](int i) -> const Link& { return links_[at(body_links_[at(i)])]; };
-  for (int i = link_start_[at(body)]; i < link_start_[at(body + 1)]; ++i) {
-    if (joint_at(i).joint->drives()) return;
+void IslandDirect::mark_acted_on(const IslandPools& pools) {
+  acted_on_.assign(at(pools.bodies.size()), 0);
+  for (int i = 0; i < pools.contacts.size(); ++i) {
+    acted_on_[at(pools.contacts[i].m_solverBodyIdA)] = acted_on_[at(pools.contacts[i].m_solverBodyIdB)] = 1;
   }
-  if (touched_[at(body)] != 0) return;
-  if (std::ranges::any_of(gears_,
-                          [&](const GearLink& g) { return std::ranges::find(g.bodies, body) != g.bodies.end(); }))
-    return;
+  for (const Link& link : links_) {
+    if (link.joint->drives()) acted_on_[at(link.body_a)] = acted_on_[at(link.body_b)] = 1;
+  }
+  for (const GearLink& link : gears_) {
+    for (std::size_t i = 0; i < link.gear->sides().size(); ++i) acted_on_[at(link.bodies[i])] = 1;
+  }
+}
+
+// A body that a joint pulls at, with force f at arm r, behaves like a pendulum: f·r is a stiffness against its
+// rotation. The step treats it explicitly, which is unstable if it is large, as for the light links of a rope with a
+// heavy end. Such a body gets a larger rotational inertia, unless motors, gears or contacts act on it: these would do
+// work as the inertia changes. (Geometric stiffness: Andrews, Teichmann and Kry 2017.)
+void IslandDirect::add_geometric_inertia(TreeNode& node, int body) {
+  if (acted_on_[at(body)] != 0) return;
   Sym3& moment = node.inertia.moment;
   const double own = (moment.xx + moment.yy + moment.zz) / 3;
   for (int i = link_start_[at(body)]; i < link_start_[at(body + 1)]; ++i) {
-    const Link& link = joint_at(i);
+    const Link& link = links_[at(body_links_[at(i)])];
     const bool child = link.body_b == body;
     const Vec3 arm = from_bt(child ? link.joint->arm_b() : link.joint->arm_a());
-    const double stiffness = (child ? step_ : -step_) * glm::dot(from_bt(link.joint->pull()), arm);  // times step²
+    // pull() is an impulse: the stiffness times the square of the step
+    const double stiffness = (child ? step_ : -step_) * glm::dot(from_bt(link.joint->pull()), arm);
     const double length = glm::length(arm);
     if (!(stiffness > kUnstable * own && length > 0)) continue;
     const double more = stiffness / kStable - own;
@@ -158,10 +165,7 @@ bool IslandDirect::build_forest(const IslandPools& pools) {
   group_.resize(at(bodies + 1));
   for (int i = 0; i <= bodies; ++i) group_[at(i)] = moves(std::min(i, bodies - 1)) && i < bodies ? i : bodies;
   link_start_.assign(at(bodies + 2), 0);
-  touched_.assign(at(bodies), 0);
-  for (int i = 0; i < pools.contacts.size(); ++i) {
-    touched_[at(pools.contacts[i].m_solverBodyIdA)] = touched_[at(pools.contacts[i].m_solverBodyIdB)] = 1;
-  }
+  mark_acted_on(pools);
   const auto vertex = [&](int body) { return moves(body) ? body : bodies; };
   for (Link& link : links_) {
     const int a = root_of(vertex(link.body_a));
@@ -230,7 +234,7 @@ bool IslandDirect::add_node(int body, int parent, int link, const IslandPools& p
   link_of_.push_back(link);
   tree_of_.push_back(static_cast<int>(trees_.size()) - 1);
   n.inertia = inertia_of(rigid);
-  if (link >= 0) add_geometric_inertia(n, body);
+  add_geometric_inertia(n, body);
   std::array<double, 6> rates{};
   const Spatial done{from_bt(solver_body.m_deltaLinearVelocity), from_bt(solver_body.m_deltaAngularVelocity)};
   if (link < 0) {

@@ -210,16 +210,13 @@ bool IslandDirect::narrow_friction() {
   return changed;
 }
 
-// Contacts of a body whose every motion motors prescribe: no impulse answers, motors must.
-bool IslandDirect::give_up_pinned() {
+// Gears whose axes motors, limits or locks hold: the trees don't respond to their impulses.
+bool IslandDirect::give_up_pinned_gears() {
   int given_up = 0;
   for (int i = 0; i < box_.size(); ++i) {
     OuterRow& row = outer_[at(boxed_[at(i)])];
-    if (row.gear >= 0) {
-      const bool pinned = !(box_.response(i, i) - row.softness > kPinned * row.eases);
-      if (pinned) given_up += give_up_gear(row);
-      continue;
-    }
+    const bool pinned = row.gear >= 0 && !(box_.response(i, i) - row.softness > kPinned * row.eases);
+    if (pinned) given_up += give_up_gear(row);
   }
   return given_up > 0;
 }

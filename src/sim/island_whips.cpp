@@ -39,7 +39,8 @@ IslandDirect::Rigid IslandDirect::motion_of(const Tree& tree, const IslandPools&
   Rigid rigid;
   if (link_of_[at(tree.first)] >= 0) return rigid;
   const auto center = [&](int node) { return center_of(*pools.bodies[body_of_[at(node)]].m_originalBody); };
-  const auto inertia = [&](int node) -> const SpatialInertia& { return system_.trees.node(node).inertia; };
+  // without what add_geometric_inertia() adds: that has no momentum
+  const auto inertia = [&](int node) { return inertia_of(*pools.bodies[body_of_[at(node)]].m_originalBody); };
   double mass = 0;
   for (int i = tree.first; i < tree.last; ++i) {
     mass += inertia(i).mass.xx;

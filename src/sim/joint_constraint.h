@@ -159,8 +159,8 @@ class JointConstraint : public btTypedConstraint {
   const btVector3& arm_b() const { return arm_b_; }
   const btVector3& linear_axis(int i) const { return axis_a_[static_cast<std::size_t>(i)]; }
   const btVector3& dual_axis(int i) const { return dual_[static_cast<std::size_t>(i)]; }
-  /// Impulse of its linear locks on the child in an internal step, N·s, world: of the last one, where it was weaker
-  /// than before, else rising to it within some steps.
+  /// Impulse of the linear locks on the child in an internal step, N·s, world. It follows a weaker impulse at once, and
+  /// a stronger one, or one in the opposite direction, within about ten steps.
   btVector3 pull() const { return axis_a_[0] * pull_[0] + axis_a_[1] * pull_[1] + axis_a_[2] * pull_[2]; }
   /// What TreeRows remembers of this joint from step to step.
   TreeMemory& tree_memory() { return tree_memory_; }

@@ -8,7 +8,7 @@
 namespace limber {
 namespace {
 
-/// A pull that becomes stronger counts by this part of the difference more in each step: an impact does not.
+/// pull() rises by this part of the difference in each step, so that it ignores impacts.
 constexpr float kPullRise = 0.125F;
 
 constexpr btScalar kInfinity = SIMD_INFINITY;
@@ -146,8 +146,10 @@ void JointConstraint::plan_rows() {
     warm_[at(r - start)] = std::clamp(kWarmStart * last_impulse_[row.axis], row.lower, row.upper);
   }
   for (std::size_t axis = 0; axis < 3; ++axis) {
-    const float more = last_impulse_[axis] - pull_[axis];
-    pull_[axis] += more * pull_[axis] >= 0 ? more * kPullRise : more;
+    const float last = last_impulse_[axis];
+    if (last * pull_[axis] < 0) pull_[axis] = 0;
+    const bool weaker = std::fabs(last) < std::fabs(pull_[axis]);
+    pull_[axis] += (last - pull_[axis]) * (weaker ? 1 : kPullRise);
   }
   last_impulse_.fill(0);
   motor_impulse_.fill(0);

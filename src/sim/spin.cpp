@@ -201,8 +201,8 @@ double Turn::clamped(double h) const {
 
 namespace {
 
-// Most fast bodies are links between two joints: whatever axis goes through a pivot away from the center of mass has
-// its direction, about which they hardly rotate.
+// A cheap test that rules out most bodies. An axis that all pivots lie on goes through the farthest one: a body that
+// hardly rotates about the line from its center of mass to that pivot has no spin.
 bool may_spin(const btRigidBody& body, const Vec3& w, double h) {
   if (body.getNumConstraintRefs() < 2) return true;  // a motor may spin it about an axis beside its center of mass
   const btVector3& inverse = body.getInvInertiaDiagLocal();

@@ -31,12 +31,7 @@ class Legs : public Stage {
     }
   }
 
-  double gap() const {
-    double most = 0;
-    for (const auto& joint : robot_.joints()) most = std::max(most, joint->gap());
-    return most;
-  }
-
+  double gap() const { return widest_gap(robot_); }
   /// The largest angle of a hip, which the servos want to be kHip, rad.
   double widest_hip() const {
     double most = 0;

@@ -218,15 +218,7 @@ class RandomScene : public Stage {
 
   double joint_gap() const {
     double most = 0;
-    for (const auto& body : world.bodies()) {
-      for (const auto& joint : body->joints()) {
-        for (int axis = 0; axis < 3; axis++) {
-          const AxisSettings& s = joint->constraint().axis(axis);
-          if (s.locked())
-            most = std::max(most, std::fabs(joint->constraint().value(axis) - static_cast<double>(s.lower)));
-        }
-      }
-    }
+    for (const auto& body : world.bodies()) most = std::max(most, widest_gap(*body));
     return most;
   }
 

@@ -30,12 +30,12 @@ RandomOutcome play_twice(std::uint64_t number, const RandomPlan& plan) {
   return first;
 }
 
-/// What energy may exceed that of the start and all work since: motors that change a part's speed by tens of rad/s in
-/// a step leave an error of second order.
+/// Upper bound of the unexplained energy, J: motors that change a part's speed by tens of rad/s in a step leave an
+/// error of second order.
 double allowed_excess(const RandomOutcome& o) { return 0.02 * o.most_kinetic + 2e-3 * o.worked + 1e-3; }
 
-/// Plays some scenes of a plan, by default the first 12; in no more than one of 200, but in none of fewer, may energy
-/// come from nothing or a body become unstable. (Chains of very different masses that swing round in a few steps do.)
+/// Plays scenes of a plan (by default the first 12). Of 200 scenes, one may gain energy or be unstable: chains of very
+/// different masses that rotate by a radian in a step do.
 void play_scenes(const RandomPlan& plan) {
   const std::uint64_t first = from_environment("LIMBER_RANDOM_FIRST", 1);
   const std::uint64_t count = from_environment("LIMBER_RANDOM_MODELS", 12);
@@ -44,7 +44,7 @@ void play_scenes(const RandomPlan& plan) {
   for (std::uint64_t n = first; n < first + count; n++) {
     const RandomOutcome o = play_twice(n, plan);
     if ((n - first + 1) % 1000 == 0) std::printf("%llu scenes\n", static_cast<unsigned long long>(n - first + 1));
-    // loops that the iterative solver can't hold together are reported as instabilities, and meant to be
+    // the iterative solver can't hold all loops together: those are unstable, and reported
     if (o.iterative || (o.excess <= allowed_excess(o) && o.health_events == 0)) continue;
     missed++;
     which += fmt::format("\nscene {}: {:.3g} J of {:.3g} J unexplained at {:.3f} s, {} instabilities", n, o.excess,
@@ -71,8 +71,8 @@ TEST(RandomModels, JointsOfTreesHoldTogether) {
   }
 }
 
-/// Scenes that once failed: 2, an account that took a motor at its stop for one that works; 26, 77, 93, 157, 282 and
-/// 400, passed joint limits against contacts; 66 and 186, uninitialized variables; 5749, bends that grew.
+/// Scenes that once failed: 2, by an account that took a motor at its stop for one that works; 26, 77, 93, 157, 282 and
+/// 400, with fallbacks or instabilities in contact; 66 and 186, by uninitialized variables; 5749, by bends that grew.
 class FormerFailure : public ::testing::TestWithParam<std::uint64_t> {};
 
 TEST_P(FormerFailure, Passes) {

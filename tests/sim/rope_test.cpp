@@ -12,14 +12,6 @@ constexpr double kLink = 0.05;   // m
 constexpr double kRadius = 0.2;  // of the weight, m
 constexpr double kWeight = 100;  // kg
 
-ShapeModel capsule_model(double radius, double height) {
-  ShapeModel m;
-  m.kind = ShapeKind::capsule;
-  m.radius = radius;
-  m.height = height;
-  return m;
-}
-
 /// 100 links of 10 g with a weight of 100 kg, hanging from the origin.
 class Rope : public Stage {
  public:
@@ -27,7 +19,7 @@ class Rope : public Stage {
     gravity({0, 0, -kGravity});
     Body& rope = body("rope");
     Part* above = &part(rope, box_model({0.1, 0.1, 0.1}), 0);
-    const ShapeModel link = capsule_model(0.01, kLink - 0.02);
+    const ShapeModel link = round_model(ShapeKind::capsule, 0.01, kLink - 0.02);
     for (int i = 0; i < kLinks; i++) {
       Part& next = part(rope, link, 0.01, {{0, 0, -kLink * (i + 0.5)}, quat_identity()});
       join(rope, *above, next, -kLink * i);
@@ -40,11 +32,7 @@ class Rope : public Stage {
 
   static double length() { return kLink * kLinks + kRadius; }
   Part& weight() { return *weight_; }
-  double gap() const {
-    double most = 0;
-    for (const auto& joint : world.bodies().front()->joints()) most = std::max(most, joint->gap());
-    return most;
-  }
+  double gap() const { return widest_gap(*world.bodies().front()); }
 
  private:
   static constexpr int kLinks = 100;

@@ -381,10 +381,7 @@ TEST(SlowMotion, ADiscThatRollsAMillimetrePerSecond) {
   Stage s;
   s.floor();
   s.gravity({0, 0, -9.81});
-  ShapeModel coin;
-  coin.kind = ShapeKind::cylinder;
-  coin.radius = 0.05;
-  coin.height = 0.04;
+  const ShapeModel coin = round_model(ShapeKind::cylinder, 0.05, 0.04);
   Part& disc = s.lone(coin, 0.1, {{0, 0, 0.05}, quat_axis({1, 0, 0}, kPi / 2)});
   s.set(disc.id(), "friction", {0.1});
   s.ticks(5);

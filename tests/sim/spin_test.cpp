@@ -18,14 +18,6 @@ namespace {
 
 constexpr double kGravity = 9.81;
 
-ShapeModel disc_model(double radius, double height) {
-  ShapeModel m;
-  m.kind = ShapeKind::cylinder;
-  m.radius = radius;
-  m.height = height;
-  return m;
-}
-
 /// A part on a revolute joint to another one, driven by a spin motor.
 struct Rotor : Stage {
   Rotor(double speed, double solver, const ShapeModel& model, double mass, const Vec3& at = Vec3(0))
@@ -51,7 +43,7 @@ TEST(Spin, ADrivenRotorReachesItsSpeed) {
   for (const double solver : {0.0, 1.0}) {
     for (const int substeps : {1, 4}) {
       for (const double speed : {50.0, 150.0, -188.0, 200.0, 300.0, -500.0, 1000.0}) {
-        Rotor s(speed, solver, disc_model(0.05, 0.02), 0.2);
+        Rotor s(speed, solver, round_model(ShapeKind::cylinder, 0.05, 0.02), 0.2);
         s.substeps(substeps);
         s.ticks(2);
         const double begin = s.value();
@@ -76,7 +68,8 @@ struct Top : Stage {
       : robot(body("top")),
         base(part(robot, box_model(Vec3(0.02)), 0)),
         axis(std::cos(tilt), 0, std::sin(tilt)),
-        disc(part(robot, disc_model(kRadius, kHeight), 1, {axis * kArm, quat_axis(Vec3(0, 1, 0), kPi / 2 - tilt)})),
+        disc(part(robot, round_model(ShapeKind::cylinder, kRadius, kHeight), 1,
+                  {axis * kArm, quat_axis(Vec3(0, 1, 0), kPi / 2 - tilt)})),
         joint(*robot.add_joint("joint", base, disc, JointType::spherical, Vec3(0), Vec3(0, 0, 1)).value()) {
     set(world.id(), "solver", {solver});
     gravity({0, 0, -kGravity});
@@ -230,7 +223,7 @@ TEST(Spin, ARotorTurnsItsPlatform) {
     Stage s;
     Body& robot = s.body("robot");
     Part& platform = s.part(robot, box_model(Vec3(0.2)), 2);
-    Part& rotor = s.part(robot, disc_model(0.05, 0.02), 0.2, {{0, 0, 0.2}, quat_identity()});
+    Part& rotor = s.part(robot, round_model(ShapeKind::cylinder, 0.05, 0.02), 0.2, {{0, 0, 0.2}, quat_identity()});
     Joint& joint =
         *robot.add_joint("joint", platform, rotor, JointType::continuous, Vec3(0, 0, 0.2), Vec3(0, 0, 1)).value();
     Motor& motor = *robot.add_motor(joint).value();
@@ -297,7 +290,7 @@ TEST(Spin, AnUnbalancedBladeReachesItsSpeed) {
 }
 
 TEST(Spin, LimitsAndServosHoldAtSpeed) {
-  Rotor s(1000, 1, disc_model(0.05, 0.02), 0.2);
+  Rotor s(1000, 1, round_model(ShapeKind::cylinder, 0.05, 0.02), 0.2);
   s.set(s.joint.id(), "angular_lower_limit", {0, 0, -200});
   s.set(s.joint.id(), "angular_upper_limit", {0, 0, 200});
   double most = 0;
@@ -351,7 +344,7 @@ TEST(Spin, ARotorOnALightBaseStaysOnItsJoint) {
     Body& robot = s.body("robot");
     Part& base = s.part(robot, box_model(Vec3(0.15)), 1);
     const Pose at{Vec3(0.3, 0, 0), quat_axis(Vec3(0, 1, 0), kPi / 2)};
-    Part& rotor = s.part(robot, disc_model(0.05, 0.02), 0.2, at);
+    Part& rotor = s.part(robot, round_model(ShapeKind::cylinder, 0.05, 0.02), 0.2, at);
     Joint& joint = *robot.add_joint("joint", base, rotor, JointType::continuous, Vec3(0), Vec3(1, 0, 0)).value();
     Motor& motor = *robot.add_motor(joint).value();
     motor.set_mode(MotorMode::spin);
@@ -374,7 +367,7 @@ TEST(Spin, AnyNumberOfThreadsGivesTheSameMotion) {
     WorldSetup setup;
     if (members > 1) setup.team = std::make_shared<Team>(members);
     World world(store, setup);
-    Shape& disc = *world.add_shape("disc", disc_model(0.05, 0.02)).value();
+    Shape& disc = *world.add_shape("disc", round_model(ShapeKind::cylinder, 0.05, 0.02)).value();
     Shape& box = *world.add_shape("box", box_model({0.1, 0.2, 0.05})).value();
     for (int i = 0; i < 40; i++) {
       const Vec3 at(i, 0, 0);

@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <memory>
 #include <string>
 #include <vector>
@@ -25,11 +26,26 @@ inline ShapeModel box_model(const Vec3& size) {
   m.size = size;
   return m;
 }
+/// A cylinder, capsule or cone along z.
+inline ShapeModel round_model(ShapeKind kind, double radius, double height) {
+  ShapeModel m;
+  m.kind = kind;
+  m.radius = radius;
+  m.height = height;
+  return m;
+}
 inline ShapeModel plane_model(const Vec3& normal = {0, 0, 1}) {
   ShapeModel m;
   m.kind = ShapeKind::plane;
   m.normal = normal;
   return m;
+}
+
+/// Largest joint gap of a body, m.
+inline double widest_gap(const Body& body) {
+  double most = 0;
+  for (const auto& joint : body.joints()) most = std::max(most, joint->gap());
+  return most;
 }
 
 /// Principal moments of a solid box, kg·m².
