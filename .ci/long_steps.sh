@@ -16,10 +16,10 @@ describe_parts() {
 # the commit; fails when the files differ from it, since then nothing can be said about them later
 clean_commit() { [ -z "$(git status --porcelain 2>&1)" ] && git rev-parse --short=10 HEAD; }
 
-# run_part NAME: leaves a stamp with the commit when all of it passed
+# run_part NAME: leaves a stamp with the commit, and the folder of robots, when all of it passed
 run_part() {
   local stamp=build/check/long/$1.passed commit before=$failed begin=$SECONDS
-  commit=$(clean_commit) || commit=none
+  commit=$(clean_commit) && commit+=${LIMBER_ROBOTS:+ $LIMBER_ROBOTS} || commit=none
   mkdir -p build/check/long
   if [ "$commit" != none ] && [ "$(cat "$stamp" 2>/dev/null)" = "$commit" ]; then
     pass
