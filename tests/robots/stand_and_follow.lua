@@ -19,7 +19,12 @@ if free_base then
 else
   fall = 2 * fall
 end
-local allowed = math.sqrt(2 * 9.81 * fall) + 20 -- m/s
+
+-- m/s above that of a free fall from the start; what has no collision geometry falls on through the floor
+local function excess(part)
+  local dropped = math.max(fall, high - part.position.z)
+  return part.linear_velocity:length() - math.sqrt(2 * 9.81 * dropped)
+end
 
 -- locked directions only
 local function gap(joint)
@@ -39,18 +44,18 @@ local function aim(motor)
   motor.target = lower + (upper - lower) * math.random()
 end
 
-local fastest, widest = 0, 0
+local most_excess, widest = 0, 0
 sim:on_step(function()
   if sim.time >= hold and sim.tick % 30 == 0 then
     for _, motor in ipairs(motors) do aim(motor) end
   end
-  for _, part in ipairs(parts) do fastest = math.max(fastest, part.linear_velocity:length()) end
+  for _, part in ipairs(parts) do most_excess = math.max(most_excess, excess(part)) end
   for _, joint in ipairs(joints) do widest = math.max(widest, gap(joint)) end
 end)
 
 sim:at(finish, function()
   local faults = {}
-  if not (fastest <= allowed) then faults[#faults + 1] = string.format("%.0f m/s (%.0f allowed)", fastest, allowed) end
+  if not (most_excess <= 20) then faults[#faults + 1] = string.format("%.0f m/s above free fall", most_excess) end
   if not (widest <= 0.002) then faults[#faults + 1] = string.format("a joint gap of %.1f mm", widest * 1e3) end
   if sim.solver_fallbacks > 0 then faults[#faults + 1] = sim.solver_fallbacks .. " fallbacks" end
   if not robot.enabled then faults[#faults + 1] = "switched off" end
