@@ -1,0 +1,117 @@
+// Roots, single precision, and the check of the arithmetic.
+#include "base/fixed_math.h"
+
+#include <algorithm>
+
+#include "base/fixed_math_sum.h"
+
+namespace limber::fixed {
+
+using detail::bits_of;
+using detail::fast_sum;
+using detail::from_bits;
+using detail::kInfinity;
+using detail::kInfinityBits;
+using detail::kNaN;
+using detail::kSignBit;
+using detail::magnitude;
+using detail::product;
+using detail::Sum;
+using detail::upper_half;
+using detail::with_sign;
+
+bool is_arithmetic_exact() {
+  // through volatile, so that this is computed when the program runs, with what the other functions are compiled with
+  volatile double near_one = 1 + 0x1p-30;
+  volatile double least = std::numeric_limits<double>::min();
+  volatile double half_digit = 0x1p-53;
+  const double a = near_one;
+  const double b = -(1 + 0x1p-29);
+  const bool is_contracted = a * a + b != 0;  // the square's last bit, which rounding loses
+  const double half = least * 0.5;
+  const bool flushes = half == 0 || half * 2 != least;
+  const double up = 1 + half_digit;
+  const double down = -1 - half_digit;
+  const double odd = (1 + 0x1p-52) + half_digit;
+  const bool rounds_to_nearest = up == 1 && down == -1 && odd == 1 + 0x1p-51;
+  return !is_contracted && !flushes && rounds_to_nearest;
+}
+
+// y = the root to 17 bits, whose cube is exact; then the series of y (1 + u)^(1/3), u = (x - y^3) / y^3.
+double cbrt(double x) {
+  const double size = magnitude(x);
+  if (size == 0 || size == kInfinity) return x;
+  if (x != x) return kNaN;
+  std::uint64_t bits = bits_of(size);
+  int exponent = 0;
+  if (bits < std::uint64_t{1} << 52) {
+    bits = bits_of(size * 0x1p54);
+    exponent = -54;
+  }
+  exponent += static_cast<int>(bits >> 52) - 1023;
+  // exponent = 3 third + part
+  const int third = (exponent + 3 * 400) / 3 - 400;
+  const int part = exponent - 3 * third;
+  constexpr double kRoots[] = {1, 0x1.428a2f98d728bp+0, 0x1.965fea53d6e3dp+0};
+  const double m = from_bits((bits & ((std::uint64_t{1} << 52) - 1)) | bits_of(1));
+  // minimax on [1, 2]: relative error 2^-19
+  const double m2 = m * m;
+  const double guess = (0x1.e53b8ad33220ap-2 + m * 0x1.ac2d3fc09ab82p-1) +
+                       m2 * ((-0x1.ddcdbf9221fa9p-2 + m * 0x1.9b96abdef0885p-3) +
+                             m2 * (-0x1.97bea2e604ab7p-5 + m * 0x1.592433e18829bp-8));
+  constexpr double kToSixteenBits = 0x1.8p+36;
+  const double y = (guess * kRoots[part] + kToSixteenBits) - kToSixteenBits;
+  const double cube = y * y * y;
+  const double z = m * detail::power_of_two(part);
+  const double u = (z - cube) / cube;
+  const double more = u * (0x1.5555555555555p-2 + u * (-0x1.c71c71c71c71cp-4 + u * 0x1.f9add3c0ca458p-5));
+  return with_sign((y + y * more) * detail::power_of_two(third), x);
+}
+
+// The square root of a^2 + b^2 as a double-double, and one step of Newton's for the digits that it leaves.
+double hypot(double x, double y) {
+  double a = std::max(magnitude(x), magnitude(y));
+  double b = std::min(magnitude(x), magnitude(y));
+  if (magnitude(x) == kInfinity || magnitude(y) == kInfinity) return kInfinity;
+  if (x != x || y != y) return kNaN;
+  if (b < a * 0x1p-54) return a + b;
+  if (b == 0) return a;
+  double scale = 1;
+  if (a > 0x1p500) {
+    scale = 0x1p600;
+    a *= 0x1p-600;
+    b *= 0x1p-600;
+  } else if (b < 0x1p-450) {
+    scale = 0x1p-600;
+    a *= 0x1p600;
+    b *= 0x1p600;
+  }
+  const Sum a2 = product(a, a);
+  const Sum b2 = product(b, b);
+  const Sum main = fast_sum(a2.hi, b2.hi);
+  const double root = std::sqrt(main.hi);
+  const Sum back = product(root, root);
+  const double left = ((main.hi - back.hi) - back.lo) + (main.lo + (a2.lo + b2.lo));
+  return (root + left / (2 * root)) * scale;
+}
+
+float sinf(float x) { return static_cast<float>(sin(double{x})); }
+float cosf(float x) { return static_cast<float>(cos(double{x})); }
+float tanf(float x) { return static_cast<float>(tan(double{x})); }
+float asinf(float x) { return static_cast<float>(asin(double{x})); }
+float acosf(float x) { return static_cast<float>(acos(double{x})); }
+float atanf(float x) { return static_cast<float>(atan(double{x})); }
+float atan2f(float y, float x) { return static_cast<float>(atan2(double{y}, double{x})); }
+float expf(float x) { return static_cast<float>(exp(double{x})); }
+float exp2f(float x) { return static_cast<float>(exp2(double{x})); }
+float logf(float x) { return static_cast<float>(log(double{x})); }
+float log2f(float x) { return static_cast<float>(log2(double{x})); }
+float log10f(float x) { return static_cast<float>(log10(double{x})); }
+float powf(float x, float y) { return static_cast<float>(pow(double{x}, double{y})); }
+float sinhf(float x) { return static_cast<float>(sinh(double{x})); }
+float coshf(float x) { return static_cast<float>(cosh(double{x})); }
+float tanhf(float x) { return static_cast<float>(tanh(double{x})); }
+float cbrtf(float x) { return static_cast<float>(cbrt(double{x})); }
+float hypotf(float x, float y) { return static_cast<float>(hypot(double{x}, double{y})); }
+
+}  // namespace limber::fixed

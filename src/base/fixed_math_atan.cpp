@@ -1,0 +1,161 @@
+// Inverse trigonometric functions. atan(a / b) = atan(c) + atan((a - c b) / (b + c a)) with c = k/64, whose arctangent
+// is in a table (Tang 1991); asin and acos by a polynomial on [0, 1/2], and asin(x) = pi/2 - 2 asin(sqrt((1 - x) / 2))
+// above.
+#include "base/fixed_math.h"
+#include "base/fixed_math_atan_table.h"
+#include "base/fixed_math_sum.h"
+
+namespace limber::fixed {
+
+namespace {
+
+using detail::bits_of;
+using detail::fast_sum;
+using detail::kInfinity;
+using detail::kNaN;
+using detail::magnitude;
+using detail::Sum;
+using detail::upper_half;
+using detail::with_sign;
+
+constexpr double kPiHigh = 0x1.921fb54442d18p+1;
+constexpr double kPiLow = 0x1.1a62633145c07p-53;
+
+// atan(a / b) for 0 <= a <= b, whose quotients and products are normal numbers, with a relative error of 2^-60
+inline Sum atan_of_ratio(double a, double b) {
+  const double shifted = a / b * 64 + detail::kRoundToInteger;
+  const Sum& entry = detail::kAtans[bits_of(shifted) & 127];
+  const double c = (shifted - detail::kRoundToInteger) * 0x1p-6;
+  const double b_top = upper_half(b);
+  // exact: a multiple of 2^-60 b, and 2^-7 b at most
+  const double dividend = (a - c * b_top) - c * (b - b_top);
+  const double ca = c * a;
+  const double divisor = b + ca;
+  const double divisor_low = (b - divisor) + ca;
+  const double inverse = 1 / divisor;
+  const double t = dividend * inverse;
+  // t to twice its digits: what its upper half leaves of the dividend, divided
+  const double top = upper_half(t);
+  const double divisor_top = upper_half(divisor);
+  const double left = ((dividend - top * divisor_top) - top * (divisor - divisor_top)) - t * divisor_low;
+  const double z = t * t;
+  // minimax on |t| <= 1/128 in z: relative error 2^-65
+  const double more = t * z * (-0x1.55555555554fdp-2 + z * (0x1.9999998925c2ep-3 + z * -0x1.248b52b1bee78p-3));
+  const Sum main = fast_sum(entry.hi, top);
+  return {main.hi, main.lo + (entry.lo + (left * inverse + more))};
+}
+
+// where each octant begins, and whether the angle is measured backwards from there
+struct Octant {
+  double hi, lo, sign;
+};
+constexpr Octant kOctants[] = {
+    {0, 0, 1}, {kPiHigh / 2, kPiLow / 2, -1}, {kPiHigh, kPiLow, -1}, {kPiHigh / 2, kPiLow / 2, 1}};
+
+// for x and y whose magnitudes are a and b, neither too large nor too small
+inline double atan2_common(double y, double x, double y_size, double x_size) {
+  const bool steep = y_size > x_size;
+  const Sum angle = steep ? atan_of_ratio(x_size, y_size) : atan_of_ratio(y_size, x_size);
+  const Octant& octant = kOctants[(steep ? 1u : 0u) + (x < 0 ? 2u : 0u)];
+  const Sum main = fast_sum(octant.hi, octant.sign * angle.hi);
+  return with_sign(main.hi + (main.lo + (octant.lo + octant.sign * angle.lo)), y);
+}
+
+double atan2_special(double y, double x) {
+  if (x != x || y != y) return kNaN;
+  const bool left = (bits_of(x) & detail::kSignBit) != 0;
+  const double y_size = magnitude(y);
+  const double x_size = magnitude(x);
+  if (y_size == 0) return with_sign(left ? kPiHigh : 0, y);
+  if (x_size == 0) return with_sign(kPiHigh / 2, y);
+  if (x_size == kInfinity) {
+    if (y_size == kInfinity) return with_sign(left ? 0x1.2d97c7f3321d2p+1 : kPiHigh / 4, y);
+    return with_sign(left ? kPiHigh : 0, y);
+  }
+  if (y_size == kInfinity) return with_sign(kPiHigh / 2, y);
+  const int y_exponent = std::ilogb(y_size);
+  const int x_exponent = std::ilogb(x_size);
+  // so far apart that the angle is a multiple of pi/2 but for rounding, or the quotient
+  if (y_exponent - x_exponent > 60) return with_sign(kPiHigh / 2, y);
+  if (y_exponent - x_exponent < -60) return left ? with_sign(kPiHigh, y) : y / x;
+  const double y_scaled = std::ldexp(y, -y_exponent);
+  const double x_scaled = std::ldexp(x, -y_exponent);
+  return atan2_common(y_scaled, x_scaled, magnitude(y_scaled), magnitude(x_scaled));
+}
+
+inline bool is_moderate(double size) {
+  constexpr double kLeast = 0x1p-500;
+  constexpr double kMost = 0x1p+500;
+  return bits_of(size) - bits_of(kLeast) < bits_of(kMost) - bits_of(kLeast);
+}
+
+// (asin(x) - x) / x^3 in z = x^2: minimax on |x| <= 1/2, relative error of asin 2^-59
+inline double asin_series(double z) {
+  const double z2 = z * z;
+  const double z4 = z2 * z2;
+  const double p0 = 0x1.5555555555578p-3 + z * 0x1.333333332df16p-4;
+  const double p2 = 0x1.6db6db722b6bap-5 + z * 0x1.f1c71a8b9b3e5p-6;
+  const double p4 = 0x1.6e8bdfe6582cdp-6 + z * 0x1.1c49de0ed236bp-6;
+  const double p6 = 0x1.ca21424010f68p-7 + z * 0x1.7577a3b19cd04p-7;
+  const double p8 = 0x1.618a201a248bep-7 + z * 0x1.e165c566d5af4p-9;
+  const double p10 = 0x1.64fe73ea36059p-6 + z * -0x1.59f110b6f02bfp-6;
+  const double p12 = 0x1.0be295edded06p-5;
+  return (p0 + z2 * p2) + z4 * ((p4 + z2 * p6) + z4 * ((p8 + z2 * p10) + z4 * p12));
+}
+
+// 2 asin(sqrt(w)) for 0 < w <= 1/4
+inline Sum twice_asin_of_root(double w) {
+  const double root = std::sqrt(w);
+  const double top = upper_half(root);
+  const double rest = (w - top * top) / (root + top);
+  return {2 * top, 2 * (rest + root * (w * asin_series(w)))};
+}
+
+}  // namespace
+
+double atan(double x) {
+  const double size = magnitude(x);
+  if (!(size < 0x1p60)) return x == x ? with_sign(kPiHigh / 2, x) : kNaN;
+  if (size < 0x1p-27) return x;
+  const bool steep = size > 1;
+  const Sum angle = steep ? atan_of_ratio(1, size) : atan_of_ratio(size, 1);
+  const Octant& octant = kOctants[steep ? 1 : 0];
+  const Sum main = fast_sum(octant.hi, octant.sign * angle.hi);
+  return with_sign(main.hi + (main.lo + (octant.lo + octant.sign * angle.lo)), x);
+}
+
+double atan2(double y, double x) {
+  const double y_size = magnitude(y);
+  const double x_size = magnitude(x);
+  if (is_moderate(y_size) && is_moderate(x_size)) return atan2_common(y, x, y_size, x_size);
+  return atan2_special(y, x);
+}
+
+double asin(double x) {
+  const double size = magnitude(x);
+  if (size <= 0.5) {
+    if (size < 0x1p-27) return x;
+    const double z = x * x;
+    return x + x * (z * asin_series(z));
+  }
+  if (!(size < 1)) return size == 1 ? with_sign(kPiHigh / 2, x) : kNaN;
+  const Sum angle = twice_asin_of_root((1 - size) * 0.5);
+  const Sum main = fast_sum(kPiHigh / 2, -angle.hi);
+  return with_sign(main.hi + (main.lo + (kPiLow / 2 - angle.lo)), x);
+}
+
+double acos(double x) {
+  const double size = magnitude(x);
+  if (size <= 0.5) {
+    const double z = x * x;
+    const Sum main = fast_sum(kPiHigh / 2, -x);
+    return main.hi + (main.lo + (kPiLow / 2 - x * (z * asin_series(z))));
+  }
+  if (!(size < 1)) return size == 1 ? (x < 0 ? kPiHigh : 0) : kNaN;
+  const Sum angle = twice_asin_of_root((1 - size) * 0.5);
+  if (x > 0) return angle.hi + angle.lo;
+  const Sum main = fast_sum(kPiHigh, -angle.hi);
+  return main.hi + (main.lo + (kPiLow - angle.lo));
+}
+
+}  // namespace limber::fixed

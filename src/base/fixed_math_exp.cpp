@@ -1,0 +1,140 @@
+// Exponential and hyperbolic functions.
+#include "base/fixed_math_exp.h"
+
+#include "base/fixed_math.h"
+
+namespace limber::fixed {
+
+double detail::scale_slowly(const ScaledSum& s) {
+  if (s.exponent > 1024) return kInfinity;
+  if (s.exponent < -1080) return 0;
+  if (s.exponent > 0) return std::ldexp(s.hi + s.lo, s.exponent);
+  const Sum sum = fast_sum(s.hi, s.lo);
+  if (s.exponent > -1022 || (s.exponent == -1022 && sum.hi >= 1)) return std::ldexp(sum.hi, s.exponent);
+  // the sum is rounded to a multiple of 2^-1074 / 2^exponent
+  const double magic = std::ldexp(1, 52 - 1074 - s.exponent);
+  const Sum rounded = fast_sum(magic, sum.hi);
+  return std::ldexp((rounded.hi + (rounded.lo + sum.lo)) - magic, s.exponent);
+}
+
+namespace {
+
+using detail::bits_of;
+using detail::exp_sum;
+using detail::fast_sum;
+using detail::kInfinity;
+using detail::kNaN;
+using detail::magnitude;
+using detail::power_of_two;
+using detail::product;
+using detail::ScaledSum;
+using detail::Sum;
+using detail::with_sign;
+
+// (sinh(x) - x) / x^3 in z = x^2: minimax on |x| <= 0.35, relative error of sinh 2^-65
+double sinh_series(double z) {
+  const double z2 = z * z;
+  const double p0 = 0x1.5555555555555p-3 + z * 0x1.111111111137bp-7;
+  const double p2 = 0x1.a01a019eaebap-13 + z * 0x1.71de4029adfbap-19;
+  const double p4 = 0x1.ae4e8e2ca0345p-26 + z * 0x1.7fad5f2f863afp-33;
+  return p0 + z2 * (p2 + z2 * p4);
+}
+
+// (tanh(x) - x) / x^3 in z = x^2: minimax on |x| <= 0.3, relative error of tanh 2^-60
+double tanh_series(double z) {
+  const double z2 = z * z;
+  const double p0 = -0x1.5555555555548p-2 + z * 0x1.111111110eb7cp-3;
+  const double p2 = -0x1.ba1ba1b594749p-5 + z * 0x1.664f4665ee508p-6;
+  const double p4 = -0x1.226da98c04d72p-7 + z * 0x1.d6a98ea2e79fap-9;
+  const double p6 = -0x1.79e91ccc68a8bp-10 + z * 0x1.075d7c0976852p-11;
+  return (p0 + z2 * p2) + (z2 * z2) * (p4 + z2 * p6);
+}
+
+// half of e^x and e^-x; for x <= 40
+struct HalfExponentials {
+  Sum up, down;
+};
+HalfExponentials half_exponentials(double x) {
+  const ScaledSum up = exp_sum(x, 0);
+  const ScaledSum down = exp_sum(-x, 0);
+  const double up_scale = power_of_two(up.exponent - 1);
+  const double down_scale = power_of_two(down.exponent - 1);
+  return {fast_sum(up.hi * up_scale, up.lo * up_scale), fast_sum(down.hi * down_scale, down.lo * down_scale)};
+}
+
+// half of e^x, for x > 40, up to infinity
+double half_exponential(double x) {
+  if (x > 711) return kInfinity;
+  ScaledSum s = exp_sum(x, 0);
+  s.exponent--;
+  return detail::scaled(s);
+}
+
+}  // namespace
+
+double exp(double x) {
+  const double size = magnitude(x);
+  if (!(size < 746)) return x != x ? kNaN : x > 0 ? kInfinity : 0;
+  if (size < 0x1p-54) return 1;
+  return detail::scaled(exp_sum(x, 0));
+}
+
+double exp2(double x) {
+  const double size = magnitude(x);
+  if (!(size < 1080)) return x != x ? kNaN : x > 0 ? kInfinity : 0;
+  if (size < 0x1p-54) return 1;
+  const double shifted = x * 128 + detail::kRoundToInteger;
+  const double r = x - (shifted - detail::kRoundToInteger) * 0x1p-7;
+  const int index = static_cast<int>(static_cast<std::uint32_t>(bits_of(shifted)));
+  const Sum& entry = detail::kExps[index & 127];
+  // 2^r - 1: minimax on |r| <= 1/256, error 2^-64
+  const double r2 = r * r;
+  const double p = r * 0x1.62e42fefa39efp-1 + r2 * ((0x1.ebfbdff82c2aap-3 + r * 0x1.c6b08d715d0ecp-5) +
+                                                    r2 * (0x1.3b2abeecfe87ep-7 + r * 0x1.5d6952afe05c8p-10));
+  return detail::scaled({entry.hi, entry.lo + entry.hi * p, index >> 7});
+}
+
+double sinh(double x) {
+  const double size = magnitude(x);
+  if (size < 0.35) {
+    if (size < 0x1p-27) return x;
+    const double z = x * x;
+    return x + x * (z * sinh_series(z));
+  }
+  if (!(size <= 40)) return x == x ? with_sign(half_exponential(size), x) : kNaN;
+  const HalfExponentials e = half_exponentials(size);
+  const Sum main = fast_sum(e.up.hi, -e.down.hi);
+  return with_sign(main.hi + (main.lo + (e.up.lo - e.down.lo)), x);
+}
+
+double cosh(double x) {
+  const double size = magnitude(x);
+  if (!(size <= 40)) return x == x ? half_exponential(size) : kNaN;
+  const HalfExponentials e = half_exponentials(size);
+  const Sum main = fast_sum(e.up.hi, e.down.hi);
+  return main.hi + (main.lo + (e.up.lo + e.down.lo));
+}
+
+double tanh(double x) {
+  const double size = magnitude(x);
+  if (size < 0.3) {
+    if (size < 0x1p-27) return x;
+    const double z = x * x;
+    return x + x * (z * tanh_series(z));
+  }
+  if (!(size <= 20)) return x == x ? with_sign(1, x) : kNaN;
+  // 1 - 2 / (e^2x + 1), with the digits that the quotient leaves
+  const ScaledSum e = exp_sum(2 * size, 0);
+  const double scale = power_of_two(e.exponent);
+  const Sum power = fast_sum(e.hi * scale, e.lo * scale);
+  const Sum raw = fast_sum(power.hi, 1);
+  const Sum divisor = fast_sum(raw.hi, raw.lo + power.lo);
+  const double inverse = 1 / divisor.hi;
+  const double q = 2 * inverse;
+  const Sum back = product(q, divisor.hi);
+  const double left = ((2 - back.hi) - back.lo) - q * divisor.lo;
+  const Sum main = fast_sum(1, -q);
+  return with_sign(main.hi + (main.lo - left * inverse), x);
+}
+
+}  // namespace limber::fixed
