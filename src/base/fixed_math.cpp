@@ -1,8 +1,6 @@
 // Roots, single precision, and the check of the arithmetic.
 #include "base/fixed_math.h"
 
-#include <algorithm>
-
 #include "base/fixed_math_sum.h"
 
 namespace limber::fixed {
@@ -13,9 +11,7 @@ using detail::from_bits;
 using detail::kInfinity;
 using detail::kInfinityBits;
 using detail::kNaN;
-using detail::kSignBit;
 using detail::magnitude;
-using detail::product;
 using detail::Sum;
 using detail::upper_half;
 using detail::with_sign;
@@ -68,31 +64,34 @@ double cbrt(double x) {
   return with_sign((y + y * more) * detail::power_of_two(third), x);
 }
 
-// The square root of a^2 + b^2 as a double-double, and one step of Newton's for the digits that it leaves.
+namespace {
+
+// The square root of a^2 + b^2 as a sum of doubles, and one step of Newton's for the digits that it leaves. For
+// magnitudes in [2^-450, 2^500].
+double hypot_common(double a, double b) {
+  const double a_top = upper_half(a);
+  const double b_top = upper_half(b);
+  const Sum main = fast_sum(a_top * a_top, b_top * b_top);
+  const double low = main.lo + ((a - a_top) * (a + a_top) + (b - b_top) * (b + b_top));
+  const double root = std::sqrt(main.hi + low);
+  const double half_inverse = 0.5 / root;
+  const double top = upper_half(root);
+  const double left = ((main.hi - top * top) - (root - top) * (root + top)) + low;
+  return root + left * half_inverse;
+}
+
+}  // namespace
+
 double hypot(double x, double y) {
-  double a = std::max(magnitude(x), magnitude(y));
-  double b = std::min(magnitude(x), magnitude(y));
-  if (magnitude(x) == kInfinity || magnitude(y) == kInfinity) return kInfinity;
+  const double x_size = magnitude(x);
+  const double y_size = magnitude(y);
+  const double a = x_size > y_size ? x_size : y_size;
+  const double b = x_size > y_size ? y_size : x_size;
+  if (a < 0x1p500 && b > 0x1p-450) return hypot_common(a, b);
+  if (x_size == kInfinity || y_size == kInfinity) return kInfinity;
   if (x != x || y != y) return kNaN;
-  if (b < a * 0x1p-54) return a + b;
-  if (b == 0) return a;
-  double scale = 1;
-  if (a > 0x1p500) {
-    scale = 0x1p600;
-    a *= 0x1p-600;
-    b *= 0x1p-600;
-  } else if (b < 0x1p-450) {
-    scale = 0x1p-600;
-    a *= 0x1p600;
-    b *= 0x1p600;
-  }
-  const Sum a2 = product(a, a);
-  const Sum b2 = product(b, b);
-  const Sum main = fast_sum(a2.hi, b2.hi);
-  const double root = std::sqrt(main.hi);
-  const Sum back = product(root, root);
-  const double left = ((main.hi - back.hi) - back.lo) + (main.lo + (a2.lo + b2.lo));
-  return (root + left / (2 * root)) * scale;
+  if (b <= a * 0x1p-54) return a + b;
+  return a > 1 ? hypot_common(a * 0x1p-600, b * 0x1p-600) * 0x1p600 : hypot_common(a * 0x1p600, b * 0x1p600) * 0x1p-600;
 }
 
 float sinf(float x) { return static_cast<float>(sin(double{x})); }

@@ -11,6 +11,7 @@ namespace {
 
 using detail::bits_of;
 using detail::fast_sum;
+using detail::from_bits;
 using detail::kInfinity;
 using detail::kNaN;
 using detail::magnitude;
@@ -89,26 +90,37 @@ inline bool is_moderate(double size) {
   return bits_of(size) - bits_of(kLeast) < bits_of(kMost) - bits_of(kLeast);
 }
 
-// (asin(x) - x) / x^3 in z = x^2: minimax on |x| <= 1/2, relative error of asin 2^-59
-inline double asin_series(double z) {
+// asin(x) - x, z = x^2: minimax on |x| <= 1/2, relative error of asin 2^-59. The leading term x^3/6 is hi, without an
+// error, but for its digits that do not fit.
+inline Sum asin_minus_argument(double x, double z) {
+  constexpr double kLead = 0x1.5555555555578p-3;
+  constexpr double kShortLead = 0x1.55p-3;                                       // 9 bits
+  const double x_top = from_bits(bits_of(x) & ~((std::uint64_t{1} << 39) - 1));  // 14 bits
+  const double square = x_top * x_top;
+  const double lead_rest = kShortLead * ((x - x_top) * ((z + x * x_top) + square));
   const double z2 = z * z;
   const double z4 = z2 * z2;
-  const double p0 = 0x1.5555555555578p-3 + z * 0x1.333333332df16p-4;
+  const double p0 = (kLead - kShortLead) + z * 0x1.333333332df16p-4;
   const double p2 = 0x1.6db6db722b6bap-5 + z * 0x1.f1c71a8b9b3e5p-6;
   const double p4 = 0x1.6e8bdfe6582cdp-6 + z * 0x1.1c49de0ed236bp-6;
   const double p6 = 0x1.ca21424010f68p-7 + z * 0x1.7577a3b19cd04p-7;
   const double p8 = 0x1.618a201a248bep-7 + z * 0x1.e165c566d5af4p-9;
   const double p10 = 0x1.64fe73ea36059p-6 + z * -0x1.59f110b6f02bfp-6;
   const double p12 = 0x1.0be295edded06p-5;
-  return (p0 + z2 * p2) + z4 * ((p4 + z2 * p6) + z4 * ((p8 + z2 * p10) + z4 * p12));
+  const double p = (p0 + z2 * p2) + z4 * ((p4 + z2 * p6) + z4 * ((p8 + z2 * p10) + z4 * p12));
+  return {square * x_top * kShortLead, lead_rest + (x * z) * p};
 }
 
-// 2 asin(sqrt(w)) for 0 < w <= 1/4
-inline Sum twice_asin_of_root(double w) {
+// asin(sqrt(w)) for 0 < w <= 1/4
+inline Sum asin_of_root(double w) {
   const double root = std::sqrt(w);
   const double top = upper_half(root);
   const double rest = (w - top * top) / (root + top);
-  return {2 * top, 2 * (rest + root * (w * asin_series(w)))};
+  const Sum more = asin_minus_argument(root, w);
+  // what rounding the root changed: the derivative of asin(x) - x is x^2 / 2 + 3/8 x^4 + ...
+  const double rounded_off = (rest - (root - top)) * (w * (0.5 + 0.375 * w));
+  const Sum main = fast_sum(top, more.hi);
+  return {main.hi, main.lo + (rest + (more.lo + rounded_off))};
 }
 
 }  // namespace
@@ -135,27 +147,28 @@ double asin(double x) {
   const double size = magnitude(x);
   if (size <= 0.5) {
     if (size < 0x1p-27) return x;
-    const double z = x * x;
-    return x + x * (z * asin_series(z));
+    const Sum more = asin_minus_argument(x, x * x);
+    const Sum main = fast_sum(x, more.hi);
+    return main.hi + (main.lo + more.lo);
   }
   if (!(size < 1)) return size == 1 ? with_sign(kPiHigh / 2, x) : kNaN;
-  const Sum angle = twice_asin_of_root((1 - size) * 0.5);
-  const Sum main = fast_sum(kPiHigh / 2, -angle.hi);
-  return with_sign(main.hi + (main.lo + (kPiLow / 2 - angle.lo)), x);
+  const Sum half = asin_of_root((1 - size) * 0.5);
+  const Sum main = fast_sum(kPiHigh / 2, -2 * half.hi);
+  return with_sign(main.hi + (main.lo + (kPiLow / 2 - 2 * half.lo)), x);
 }
 
 double acos(double x) {
   const double size = magnitude(x);
   if (size <= 0.5) {
-    const double z = x * x;
+    const Sum more = asin_minus_argument(x, x * x);
     const Sum main = fast_sum(kPiHigh / 2, -x);
-    return main.hi + (main.lo + (kPiLow / 2 - x * (z * asin_series(z))));
+    return main.hi + (main.lo + ((kPiLow / 2 - more.lo) - more.hi));
   }
   if (!(size < 1)) return size == 1 ? (x < 0 ? kPiHigh : 0) : kNaN;
-  const Sum angle = twice_asin_of_root((1 - size) * 0.5);
-  if (x > 0) return angle.hi + angle.lo;
-  const Sum main = fast_sum(kPiHigh, -angle.hi);
-  return main.hi + (main.lo + (kPiLow - angle.lo));
+  const Sum half = asin_of_root((1 - size) * 0.5);
+  if (x > 0) return 2 * (half.hi + half.lo);
+  const Sum main = fast_sum(kPiHigh, -2 * half.hi);
+  return main.hi + (main.lo + (kPiLow - 2 * half.lo));
 }
 
 }  // namespace limber::fixed

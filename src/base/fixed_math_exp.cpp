@@ -55,8 +55,10 @@ struct HalfExponentials {
   Sum up, down;
 };
 HalfExponentials half_exponentials(double x) {
-  const ScaledSum up = exp_sum(x, 0);
-  const ScaledSum down = exp_sum(-x, 0);
+  const detail::ExpTerms t = detail::exp_terms(x, 0);
+  const detail::ExpSeries series(t.r);
+  const ScaledSum up = detail::exp_entry(t.index, series.even + series.odd);
+  const ScaledSum down = detail::exp_entry(-t.index, series.even - series.odd);
   const double up_scale = power_of_two(up.exponent - 1);
   const double down_scale = power_of_two(down.exponent - 1);
   return {fast_sum(up.hi * up_scale, up.lo * up_scale), fast_sum(down.hi * down_scale, down.lo * down_scale)};
@@ -86,12 +88,11 @@ double exp2(double x) {
   const double shifted = x * 128 + detail::kRoundToInteger;
   const double r = x - (shifted - detail::kRoundToInteger) * 0x1p-7;
   const int index = static_cast<int>(static_cast<std::uint32_t>(bits_of(shifted)));
-  const Sum& entry = detail::kExps[index & 127];
   // 2^r - 1: minimax on |r| <= 1/256, error 2^-64
   const double r2 = r * r;
   const double p = r * 0x1.62e42fefa39efp-1 + r2 * ((0x1.ebfbdff82c2aap-3 + r * 0x1.c6b08d715d0ecp-5) +
                                                     r2 * (0x1.3b2abeecfe87ep-7 + r * 0x1.5d6952afe05c8p-10));
-  return detail::scaled({entry.hi, entry.lo + entry.hi * p, index >> 7});
+  return detail::scaled(detail::exp_entry(index, p));
 }
 
 double sinh(double x) {

@@ -12,22 +12,44 @@ struct ScaledSum {
   int exponent;
 };
 
-/// e^(x + x_low) for |x| < 1000 and a small x_low, with a relative error of 2^-61: x = n ln2/128 + r, a table of
-/// 2^(n/128) and a polynomial (Tang 1989).
-inline ScaledSum exp_sum(double x, double x_low) {
+/// x = index ln2/128 + r, |r| <= 1.01 ln2/256.
+struct ExpTerms {
+  int index;
+  double r;
+};
+
+/// Of x + x_low, for |x| < 1000 and |x_low| < 2^-16.
+inline ExpTerms exp_terms(double x, double x_low) {
   // ln2/128 in two parts; multiples of the first by up to 2^19 are exact
   constexpr double kStep1 = 0x1.62e42fef8p-8;
   constexpr double kStep2 = 0x1.1cf79abc9e3b4p-43;
   constexpr double kPerStep = 0x1.71547652b82fep+7;
   const double shifted = x * kPerStep + kRoundToInteger;
   const double n = shifted - kRoundToInteger;
-  const int index = static_cast<int>(static_cast<std::uint32_t>(bits_of(shifted)));
-  const double r = (x - n * kStep1) + (x_low - n * kStep2);
+  return {static_cast<int>(static_cast<std::uint32_t>(bits_of(shifted))), (x - n * kStep1) + (x_low - n * kStep2)};
+}
+
+/// (e^r - e^-r) / 2 and (e^r + e^-r) / 2 - 1. Minimax polynomial of e^r - 1 on |r| <= 1.01 ln2/256: error 2^-63.
+struct ExpSeries {
+  double odd, even;
+  explicit ExpSeries(double r) {
+    const double r2 = r * r;
+    odd = r + (r * r2) * (0x1.55555555552f5p-3 + r2 * 0x1.11111c178549dp-7);
+    even = r2 * (0.5 + r2 * 0x1.55555a2e6677bp-5);
+  }
+};
+
+/// 2^(index/128) (1 + growth)
+inline ScaledSum exp_entry(int index, double growth) {
   const Sum& entry = kExps[index & 127];
-  const double r2 = r * r;
-  // minimax on |r| <= ln2/256: error 2^-63
-  const double p = r + r2 * (0.5 + (r * 0x1.5555555555307p-3 + r2 * (0x1.55555a1861779p-5 + r * 0x1.11111bf2f342ap-7)));
-  return {entry.hi, entry.lo + entry.hi * p, index >> 7};
+  return {entry.hi, entry.lo + entry.hi * growth, index >> 7};
+}
+
+/// e^(x + x_low) with a relative error of 2^-61, by a table of 2^(k/128) and a polynomial (Tang 1989).
+inline ScaledSum exp_sum(double x, double x_low) {
+  const ExpTerms t = exp_terms(x, x_low);
+  const ExpSeries series(t.r);
+  return exp_entry(t.index, series.odd + series.even);
 }
 
 /// (hi + lo) * 2^exponent where that is subnormal or overflows, rounded once.

@@ -18,8 +18,6 @@ using detail::kNaN;
 using detail::kSignBit;
 using detail::LogEntry;
 using detail::magnitude;
-using detail::product;
-using detail::ScaledSum;
 using detail::Sum;
 using detail::upper_half;
 
@@ -69,7 +67,7 @@ inline Sum log_sum(const LogTerms& t) {
   // -r^2 / 2, the first part exactly
   const Sum main = fast_sum(linear.hi, -0.5 * (top * top));
   const double low = (t.e * kLn2Low + t.entry.log_low) + r2 * (r * p);
-  return fast_sum(main.hi, main.lo + (linear.lo + (low - 0.5 * (rest * (top + r)))));
+  return {main.hi, main.lo + (linear.lo + (low - 0.5 * (rest * (top + r))))};
 }
 
 // true: the logarithm is finite, or it is set to what it is
@@ -110,10 +108,12 @@ Parity parity_of(double y) {
 // of the number with these bits (see log_terms) and |y| in [2^-65, 2^63)
 inline double pow_common(std::uint64_t x_bits, double y) {
   const Sum l = log_sum(log_terms(x_bits));
-  const Sum main = product(l.hi, y);
-  const double lo = main.lo + l.lo * y;
-  if (!(magnitude(main.hi) < 746)) return main.hi > 0 ? kInfinity : 0;
-  return detail::scaled(detail::exp_sum(main.hi, lo));
+  const double l_top = upper_half(l.hi);
+  const double y_top = upper_half(y);
+  const double exponent = l_top * y_top;
+  const double low = ((l.hi - l_top) + l.lo) * y + l_top * (y - y_top);
+  if (!(magnitude(exponent) < 746)) return exponent > 0 ? kInfinity : 0;
+  return detail::scaled(detail::exp_sum(exponent, low));
 }
 
 double pow_of_negative_or_special(double x, double y) {
