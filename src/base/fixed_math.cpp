@@ -1,9 +1,11 @@
-// Roots, single precision, and the check of the arithmetic.
+// Cube root, hypotenuse, the single-precision functions and the check of the arithmetic.
 #include "base/fixed_math.h"
 
 #include "base/fixed_math_sum.h"
 
 namespace limber::fixed {
+
+namespace {
 
 using detail::bits_of;
 using detail::fast_sum;
@@ -16,14 +18,17 @@ using detail::Sum;
 using detail::upper_half;
 using detail::with_sign;
 
+}  // namespace
+
 bool is_arithmetic_exact() {
-  // through volatile, so that this is computed when the program runs, with what the other functions are compiled with
+  // Reads from volatile variables keep the compiler from evaluating this at compile time.
   volatile double near_one = 1 + 0x1p-30;
   volatile double least = std::numeric_limits<double>::min();
   volatile double half_digit = 0x1p-53;
   const double a = near_one;
   const double b = -(1 + 0x1p-29);
-  const bool is_contracted = a * a + b != 0;  // the square's last bit, which rounding loses
+  // The rounded square of a is -b; the exact one is larger.
+  const bool is_contracted = a * a + b != 0;
   const double half = least * 0.5;
   const bool flushes = half == 0 || half * 2 != least;
   const double up = 1 + half_digit;
@@ -33,7 +38,7 @@ bool is_arithmetic_exact() {
   return !is_contracted && !flushes && rounds_to_nearest;
 }
 
-// y = the root to 17 bits, whose cube is exact; then the series of y (1 + u)^(1/3), u = (x - y^3) / y^3.
+// With y the root rounded to 17 bits, y^3 is exact. Multiplies y by the series of (1 + u)^(1/3), u = (x - y^3) / y^3.
 double cbrt(double x) {
   const double size = magnitude(x);
   if (size == 0 || size == kInfinity) return x;
@@ -45,12 +50,12 @@ double cbrt(double x) {
     exponent = -54;
   }
   exponent += static_cast<int>(bits >> 52) - 1023;
-  // exponent = 3 third + part
+  // exponent = 3 * third + part, part in 0 .. 2
   const int third = (exponent + 3 * 400) / 3 - 400;
   const int part = exponent - 3 * third;
   constexpr double kRoots[] = {1, 0x1.428a2f98d728bp+0, 0x1.965fea53d6e3dp+0};
   const double m = from_bits((bits & ((std::uint64_t{1} << 52) - 1)) | bits_of(1));
-  // minimax on [1, 2]: relative error 2^-19
+  // minimax polynomial for the root on [1, 2], relative error 2^-19
   const double m2 = m * m;
   const double guess = (0x1.e53b8ad33220ap-2 + m * 0x1.ac2d3fc09ab82p-1) +
                        m2 * ((-0x1.ddcdbf9221fa9p-2 + m * 0x1.9b96abdef0885p-3) +
@@ -66,8 +71,8 @@ double cbrt(double x) {
 
 namespace {
 
-// The square root of a^2 + b^2 as a sum of doubles, and one step of Newton's for the digits that it leaves. For
-// magnitudes in [2^-450, 2^500].
+// Returns the square root of a^2 + b^2, which is computed as a sum of doubles, and applies one Newton step to the root.
+// a >= b > 0; their squares must be normal numbers.
 double hypot_common(double a, double b) {
   const double a_top = upper_half(a);
   const double b_top = upper_half(b);
@@ -76,8 +81,8 @@ double hypot_common(double a, double b) {
   const double root = std::sqrt(main.hi + low);
   const double half_inverse = 0.5 / root;
   const double top = upper_half(root);
-  const double left = ((main.hi - top * top) - (root - top) * (root + top)) + low;
-  return root + left * half_inverse;
+  const double remainder = ((main.hi - top * top) - (root - top) * (root + top)) + low;
+  return root + remainder * half_inverse;
 }
 
 }  // namespace

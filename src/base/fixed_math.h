@@ -1,21 +1,21 @@
-// Math functions whose results have the same bits on every machine and with every compiler.
+// Math functions with bit-identical results on all machines and with all compilers.
 //
-// The C library's sin(), exp() or pow() differ in the last bit between versions, processors and platforms. These use
-// only operations that IEEE 754 defines exactly (+ - * / and the square root, on doubles) and tables of constants, so
-// that a result depends on nothing but the argument. They assume what every program starts with: rounding to nearest,
-// subnormal numbers, no contraction of a * b + c into a fused operation (-ffp-contract=off), none of -ffast-math; see
-// is_arithmetic_exact(). They do not set errno, and raise floating-point exceptions in no defined way.
+// sin(), exp() or pow() of the C library differ in the last bit between versions, processors and platforms. These
+// functions use tables of constants and operations that IEEE 754 defines exactly (+ - * / and the square root of
+// doubles), so that a result depends on the argument only. They require rounding to nearest and subnormal numbers (the
+// defaults of a process), -ffp-contract=off, because a fused multiply-add rounds differently, and no -ffast-math;
+// is_arithmetic_exact() checks this. They do not set errno; the floating-point exception flags are unspecified.
 //
-// Special cases follow C99 Annex F. Every NaN that is returned is the same: positive, quiet, without a payload.
-// Errors are below 0.6 ulp; tests/base/fixed_math_test.cpp has the bound of each function.
+// Special cases follow C99 Annex F. All returned NaNs have the same bits: positive, quiet, no payload. Errors are below
+// 0.55 ulp (0.75 ulp for subnormal results of hypot); tests/base/fixed_math_reference.h lists the bounds.
 #pragma once
 
 namespace limber::fixed {
 
-/// True if the processor and the flags of the compiler are as these functions need them.
+/// Checks the requirements on rounding, subnormal numbers and contraction for the calling thread.
 bool is_arithmetic_exact();
 
-// Trigonometric functions, in radians. Arguments are reduced with as many digits of pi as they need.
+// Trigonometric functions, in radians. The argument reduction is exact for all doubles.
 double sin(double x);
 double cos(double x);
 double tan(double x);
@@ -23,7 +23,7 @@ double tan(double x);
 struct SinCos {
   double sin, cos;
 };
-/// The bits of sin() and cos(), in less time than two calls.
+/// Returns the same bits as sin() and cos(), faster than two calls.
 SinCos sincos(double x);
 
 double asin(double x);
@@ -46,8 +46,7 @@ double tanh(double x);
 double cbrt(double x);
 double hypot(double x, double y);
 
-// Single precision: the double function's result, rounded once more, which is the correctly rounded value but for one
-// argument in some hundred million.
+// Single precision: the result of the double function, rounded to float. All but a few results are correctly rounded.
 float sinf(float x);
 float cosf(float x);
 float tanf(float x);

@@ -1,6 +1,6 @@
-// Inverse trigonometric functions. atan(a / b) = atan(c) + atan((a - c b) / (b + c a)) with c = k/64, whose arctangent
-// is in a table (Tang 1991); asin and acos by a polynomial on [0, 1/2], and asin(x) = pi/2 - 2 asin(sqrt((1 - x) / 2))
-// above.
+// Inverse trigonometric functions. The arctangent is table-driven (Tang 1991): with c = k/64 near a / b,
+// atan(a / b) = atan(c) + atan((a - c b) / (b + c a)), and the table has atan(c). The arcsine is a polynomial on
+// [0, 1/2]; for larger arguments, asin(x) = pi/2 - 2 asin(sqrt((1 - x) / 2)).
 #include "base/fixed_math.h"
 #include "base/fixed_math_atan_table.h"
 #include "base/fixed_math_sum.h"
@@ -22,38 +22,39 @@ using detail::with_sign;
 constexpr double kPiHigh = 0x1.921fb54442d18p+1;
 constexpr double kPiLow = 0x1.1a62633145c07p-53;
 
-// atan(a / b) for 0 <= a <= b, whose quotients and products are normal numbers, with a relative error of 2^-60
+// Returns atan(a / b) for 0 <= a <= b with a relative error of 2^-60. Quotients and products of a and b must be normal
+// numbers.
 inline Sum atan_of_ratio(double a, double b) {
   const double shifted = a / b * 64 + detail::kRoundToInteger;
   const Sum& entry = detail::kAtans[bits_of(shifted) & 127];
   const double c = (shifted - detail::kRoundToInteger) * 0x1p-6;
   const double b_top = upper_half(b);
-  // exact: a multiple of 2^-60 b, and 2^-7 b at most
+  // The dividend is exact, because it is a multiple of 2^-60 b and at most 2^-7 b.
   const double dividend = (a - c * b_top) - c * (b - b_top);
   const double ca = c * a;
   const double divisor = b + ca;
   const double divisor_low = (b - divisor) + ca;
   const double inverse = 1 / divisor;
   const double t = dividend * inverse;
-  // t to twice its digits: what its upper half leaves of the dividend, divided
+  // The remainder of the division by the upper half of t gives the quotient with twice the digits.
   const double top = upper_half(t);
   const double divisor_top = upper_half(divisor);
-  const double left = ((dividend - top * divisor_top) - top * (divisor - divisor_top)) - t * divisor_low;
+  const double remainder = ((dividend - top * divisor_top) - top * (divisor - divisor_top)) - t * divisor_low;
   const double z = t * t;
-  // minimax on |t| <= 1/128 in z: relative error 2^-65
-  const double more = t * z * (-0x1.55555555554fdp-2 + z * (0x1.9999998925c2ep-3 + z * -0x1.248b52b1bee78p-3));
+  // minimax polynomial for atan(t) - t on |t| <= 1/128, relative error of atan(t) 2^-65
+  const double series = t * z * (-0x1.55555555554fdp-2 + z * (0x1.9999998925c2ep-3 + z * -0x1.248b52b1bee78p-3));
   const Sum main = fast_sum(entry.hi, top);
-  return {main.hi, main.lo + (entry.lo + (left * inverse + more))};
+  return {main.hi, main.lo + (entry.lo + (remainder * inverse + series))};
 }
 
-// where each octant begins, and whether the angle is measured backwards from there
+// The angle that an octant's arctangent is added to, or subtracted from if the sign is -1.
 struct Octant {
   double hi, lo, sign;
 };
 constexpr Octant kOctants[] = {
     {0, 0, 1}, {kPiHigh / 2, kPiLow / 2, -1}, {kPiHigh, kPiLow, -1}, {kPiHigh / 2, kPiLow / 2, 1}};
 
-// for x and y whose magnitudes are a and b, neither too large nor too small
+// Returns atan2(y, x) for magnitudes in [2^-500, 2^500].
 inline double atan2_common(double y, double x, double y_size, double x_size) {
   const bool steep = y_size > x_size;
   const Sum angle = steep ? atan_of_ratio(x_size, y_size) : atan_of_ratio(y_size, x_size);
@@ -74,9 +75,11 @@ double atan2_special(double y, double x) {
     return with_sign(left ? kPiHigh : 0, y);
   }
   if (y_size == kInfinity) return with_sign(kPiHigh / 2, y);
-  const int y_exponent = std::ilogb(y_size);
-  const int x_exponent = std::ilogb(x_size);
-  // so far apart that the angle is a multiple of pi/2 but for rounding, or the quotient
+  int y_exponent = 0;
+  int x_exponent = 0;
+  (void)std::frexp(y_size, &y_exponent);
+  (void)std::frexp(x_size, &x_exponent);
+  // If one is far larger, the result is a multiple of pi/2, rounded, or the quotient.
   if (y_exponent - x_exponent > 60) return with_sign(kPiHigh / 2, y);
   if (y_exponent - x_exponent < -60) return left ? with_sign(kPiHigh, y) : y / x;
   const double y_scaled = std::ldexp(y, -y_exponent);
@@ -90,8 +93,8 @@ inline bool is_moderate(double size) {
   return bits_of(size) - bits_of(kLeast) < bits_of(kMost) - bits_of(kLeast);
 }
 
-// asin(x) - x, z = x^2: minimax on |x| <= 1/2, relative error of asin 2^-59. The leading term x^3/6 is hi, without an
-// error, but for its digits that do not fit.
+// Returns asin(x) - x for |x| <= 1/2 and z = x^2, by a minimax polynomial; the relative error of asin(x) is 2^-59. hi
+// is the upper part of the leading term x^3/6 and exact, so that rounding affects the small rest only.
 inline Sum asin_minus_argument(double x, double z) {
   constexpr double kLead = 0x1.5555555555578p-3;
   constexpr double kShortLead = 0x1.55p-3;                                       // 9 bits
@@ -111,16 +114,16 @@ inline Sum asin_minus_argument(double x, double z) {
   return {square * x_top * kShortLead, lead_rest + (x * z) * p};
 }
 
-// asin(sqrt(w)) for 0 < w <= 1/4
+// Returns asin(sqrt(w)) for 0 < w <= 1/4.
 inline Sum asin_of_root(double w) {
   const double root = std::sqrt(w);
   const double top = upper_half(root);
   const double rest = (w - top * top) / (root + top);
   const Sum more = asin_minus_argument(root, w);
-  // what rounding the root changed: the derivative of asin(x) - x is x^2 / 2 + 3/8 x^4 + ...
-  const double rounded_off = (rest - (root - top)) * (w * (0.5 + 0.375 * w));
+  // corrects for the rounding error of the root: the derivative of asin(x) - x is x^2 / 2 + 3/8 x^4 + ...
+  const double correction = (rest - (root - top)) * (w * (0.5 + 0.375 * w));
   const Sum main = fast_sum(top, more.hi);
-  return {main.hi, main.lo + (rest + (more.lo + rounded_off))};
+  return {main.hi, main.lo + (rest + (more.lo + correction))};
 }
 
 }  // namespace

@@ -1,11 +1,11 @@
-// Arctangents, computed with 400 bits and rounded; for fixed_math_atan.cpp only.
+// Arctangents, computed with 400 bits and rounded. Included by fixed_math_atan.cpp only.
 #pragma once
 
 #include "base/fixed_math_sum.h"
 
 namespace limber::fixed::detail {
 
-/// atan(k/64), k = 0 .. 64
+/// Entry k is atan(k/64), k = 0 .. 64.
 inline constexpr Sum kAtans[] = {
     {0x0p+0, 0x0p+0},
     {0x1.fff555bbb729bp-7, -0x1.220c39d4dff5p-61},

@@ -5,13 +5,13 @@
 
 namespace limber::fixed {
 
-double detail::scale_slowly(const ScaledSum& s) {
+double detail::scaled_at_limits(const ScaledSum& s) {
   if (s.exponent > 1024) return kInfinity;
   if (s.exponent < -1080) return 0;
   if (s.exponent > 0) return std::ldexp(s.hi + s.lo, s.exponent);
   const Sum sum = fast_sum(s.hi, s.lo);
   if (s.exponent > -1022 || (s.exponent == -1022 && sum.hi >= 1)) return std::ldexp(sum.hi, s.exponent);
-  // the sum is rounded to a multiple of 2^-1074 / 2^exponent
+  // The result is subnormal: rounds the sum to a multiple of 2^-1074 / 2^exponent.
   const double magic = std::ldexp(1, 52 - 1074 - s.exponent);
   const Sum rounded = fast_sum(magic, sum.hi);
   return std::ldexp((rounded.hi + (rounded.lo + sum.lo)) - magic, s.exponent);
@@ -31,7 +31,7 @@ using detail::ScaledSum;
 using detail::Sum;
 using detail::with_sign;
 
-// (sinh(x) - x) / x^3 in z = x^2: minimax on |x| <= 0.35, relative error of sinh 2^-65
+// Returns (sinh(x) - x) / x^3 for z = x^2 by a minimax polynomial on |x| <= 0.35; the relative error of sinh is 2^-65.
 double sinh_series(double z) {
   const double z2 = z * z;
   const double p0 = 0x1.5555555555555p-3 + z * 0x1.111111111137bp-7;
@@ -40,7 +40,7 @@ double sinh_series(double z) {
   return p0 + z2 * (p2 + z2 * p4);
 }
 
-// (tanh(x) - x) / x^3 in z = x^2: minimax on |x| <= 0.3, relative error of tanh 2^-60
+// Returns (tanh(x) - x) / x^3 for z = x^2 by a minimax polynomial on |x| <= 0.3, the relative error of tanh is 2^-60.
 double tanh_series(double z) {
   const double z2 = z * z;
   const double p0 = -0x1.5555555555548p-2 + z * 0x1.111111110eb7cp-3;
@@ -50,7 +50,7 @@ double tanh_series(double z) {
   return (p0 + z2 * p2) + (z2 * z2) * (p4 + z2 * p6);
 }
 
-// half of e^x and e^-x; for x <= 40
+// e^x / 2 and e^-x / 2, for 0 <= x <= 40.
 struct HalfExponentials {
   Sum up, down;
 };
@@ -64,7 +64,7 @@ HalfExponentials half_exponentials(double x) {
   return {fast_sum(up.hi * up_scale, up.lo * up_scale), fast_sum(down.hi * down_scale, down.lo * down_scale)};
 }
 
-// half of e^x, for x > 40, up to infinity
+// Returns e^x / 2 for x > 40, infinity included.
 double half_exponential(double x) {
   if (x > 711) return kInfinity;
   ScaledSum s = exp_sum(x, 0);
@@ -88,7 +88,7 @@ double exp2(double x) {
   const double shifted = x * 128 + detail::kRoundToInteger;
   const double r = x - (shifted - detail::kRoundToInteger) * 0x1p-7;
   const int index = static_cast<int>(static_cast<std::uint32_t>(bits_of(shifted)));
-  // 2^r - 1: minimax on |r| <= 1/256, error 2^-64
+  // minimax polynomial for 2^r - 1 on |r| <= 1/256, error 2^-64
   const double r2 = r * r;
   const double p = r * 0x1.62e42fefa39efp-1 + r2 * ((0x1.ebfbdff82c2aap-3 + r * 0x1.c6b08d715d0ecp-5) +
                                                     r2 * (0x1.3b2abeecfe87ep-7 + r * 0x1.5d6952afe05c8p-10));
@@ -118,13 +118,13 @@ double cosh(double x) {
 
 double tanh(double x) {
   const double size = magnitude(x);
-  if (size < 0.3) {
+  if (size < 0.25) {
     if (size < 0x1p-27) return x;
     const double z = x * x;
     return x + x * (z * tanh_series(z));
   }
   if (!(size <= 20)) return x == x ? with_sign(1, x) : kNaN;
-  // 1 - 2 / (e^2x + 1), with the digits that the quotient leaves
+  // tanh x = 1 - 2 / (e^2x + 1)
   const ScaledSum e = exp_sum(2 * size, 0);
   const double scale = power_of_two(e.exponent);
   const Sum power = fast_sum(e.hi * scale, e.lo * scale);
@@ -133,9 +133,10 @@ double tanh(double x) {
   const double inverse = 1 / divisor.hi;
   const double q = 2 * inverse;
   const Sum back = product(q, divisor.hi);
-  const double left = ((2 - back.hi) - back.lo) - q * divisor.lo;
+  // The remainder of the division corrects the quotient.
+  const double remainder = ((2 - back.hi) - back.lo) - q * divisor.lo;
   const Sum main = fast_sum(1, -q);
-  return with_sign(main.hi + (main.lo - left * inverse), x);
+  return with_sign(main.hi + (main.lo - remainder * inverse), x);
 }
 
 }  // namespace limber::fixed

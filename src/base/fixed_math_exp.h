@@ -1,4 +1,5 @@
-// The exponential function in double-double, for exp, pow and the hyperbolic functions; for fixed_math*.cpp only.
+// The exponential function in double-double, for exp(), pow() and the hyperbolic functions. Included by fixed_math*.cpp
+// only.
 #pragma once
 
 #include "base/fixed_math_exp_table.h"
@@ -12,15 +13,15 @@ struct ScaledSum {
   int exponent;
 };
 
-/// x = index ln2/128 + r, |r| <= 1.01 ln2/256.
+/// The parts of x = index ln2/128 + r, |r| <= 1.01 ln2/256.
 struct ExpTerms {
   int index;
   double r;
 };
 
-/// Of x + x_low, for |x| < 1000 and |x_low| < 2^-16.
+/// Reduces x + x_low, for |x| < 1000 and |x_low| < 2^-15.3 (Cody, Waite 1980).
 inline ExpTerms exp_terms(double x, double x_low) {
-  // ln2/128 in two parts; multiples of the first by up to 2^19 are exact
+  // ln2/128 in two parts. Products of the first with integers up to 2^19 are exact.
   constexpr double kStep1 = 0x1.62e42fef8p-8;
   constexpr double kStep2 = 0x1.1cf79abc9e3b4p-43;
   constexpr double kPerStep = 0x1.71547652b82fep+7;
@@ -29,7 +30,7 @@ inline ExpTerms exp_terms(double x, double x_low) {
   return {static_cast<int>(static_cast<std::uint32_t>(bits_of(shifted))), (x - n * kStep1) + (x_low - n * kStep2)};
 }
 
-/// (e^r - e^-r) / 2 and (e^r + e^-r) / 2 - 1. Minimax polynomial of e^r - 1 on |r| <= 1.01 ln2/256: error 2^-63.
+/// Odd and even part of e^r - 1, by a minimax polynomial on |r| <= 1.01 ln2/256 with an error of 2^-63.
 struct ExpSeries {
   double odd, even;
   explicit ExpSeries(double r) {
@@ -39,24 +40,24 @@ struct ExpSeries {
   }
 };
 
-/// 2^(index/128) (1 + growth)
+/// Returns 2^(index/128) (1 + growth).
 inline ScaledSum exp_entry(int index, double growth) {
   const Sum& entry = kExps[index & 127];
   return {entry.hi, entry.lo + entry.hi * growth, index >> 7};
 }
 
-/// e^(x + x_low) with a relative error of 2^-61, by a table of 2^(k/128) and a polynomial (Tang 1989).
+/// Returns e^(x + x_low) with a relative error of 2^-61, by a table of 2^(k/128) and a polynomial (Tang 1989).
 inline ScaledSum exp_sum(double x, double x_low) {
   const ExpTerms t = exp_terms(x, x_low);
   const ExpSeries series(t.r);
   return exp_entry(t.index, series.odd + series.even);
 }
 
-/// (hi + lo) * 2^exponent where that is subnormal or overflows, rounded once.
-double scale_slowly(const ScaledSum& s);
+/// Returns (hi + lo) * 2^exponent, rounded once also if the result is subnormal or overflows.
+double scaled_at_limits(const ScaledSum& s);
 
 inline double scaled(const ScaledSum& s) {
-  if (s.exponent < -1020 || s.exponent > 1022) return scale_slowly(s);
+  if (s.exponent < -1020 || s.exponent > 1022) return scaled_at_limits(s);
   return (s.hi + s.lo) * power_of_two(s.exponent);
 }
 

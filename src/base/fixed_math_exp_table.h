@@ -1,11 +1,11 @@
-// Powers of two and logarithms, computed with 400 bits and rounded; for fixed_math_exp.h and fixed_math_log.h only.
+// Powers of two and logarithms, computed with 400 bits and rounded. Included by fixed_math*.cpp only.
 #pragma once
 
 #include "base/fixed_math_sum.h"
 
 namespace limber::fixed::detail {
 
-/// 2^(k/128), k = 0 .. 127
+/// Entry k is 2^(k/128), k = 0 .. 127.
 inline constexpr Sum kExps[] = {
     {0x1p+0, 0x0p+0},
     {0x1.0163da9fb3335p+0, 0x1.b61299ab8cdb7p-54},
@@ -137,7 +137,7 @@ inline constexpr Sum kExps[] = {
     {0x1.fd3c22b8f71f1p+0, 0x1.2eb74966579e7p-57},
 };
 
-/// A factor of 11 bits and minus its logarithm, log_high being a multiple of 2^-42.
+/// A factor of 11 bits and minus its logarithm log_high + log_low. log_high is a multiple of 2^-42.
 struct LogEntry {
   double inverse, log_high, log_low;
 };

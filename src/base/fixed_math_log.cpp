@@ -1,6 +1,6 @@
-// Logarithms and powers. x = 2^e z with z in [0.6875, 1.375), a table of c near 1 / z and of log c, and a polynomial
-// for log(1 + r), r = c z - 1 (Tang 1990). c has 11 bits, so that r is exact as a sum of two doubles. Around x = 1, c
-// is 1 and e is 0: results near 0 have all their digits.
+// Logarithms and powers, table-driven (Tang 1990): x = 2^e z with z in [0.6875, 1.375), a table of c near 1 / z and of
+// log c, and a polynomial for log(1 + r), r = c z - 1. c has 11 bits, so that r is exact as a sum of two doubles.
+// Around x = 1, c is 1 and e is 0, so that results near 0 have a small relative error.
 #include "base/fixed_math.h"
 #include "base/fixed_math_exp.h"
 #include "base/fixed_math_sum.h"
@@ -23,8 +23,8 @@ using detail::upper_half;
 
 constexpr std::uint64_t kLeastNormal = std::uint64_t{1} << 52;
 
-// log x = e ln2 + entry's log + log(1 + r + r_low). e ln2, the entry's log_high and r are multiples of 2^-42 below 2^10
-// (of e ln2, the part that kLn2 is): their sums are exact.
+// The parts of log x = e ln2 + log of the entry + log(1 + r + r_low). e * kLn2, log_high of the entry and r are
+// multiples of 2^-42 below 2^10, so that their sums are exact.
 struct LogTerms {
   const LogEntry& entry;
   double e, r, r_low;
@@ -32,7 +32,7 @@ struct LogTerms {
 constexpr double kLn2 = 0x1.62e42fefa38p-1;
 constexpr double kLn2Low = 0x1.ef35793c7673p-45;
 
-// of a positive normal number's bits; of a smaller one's, times 2^52, after 52 << 52 was subtracted
+// Takes the bits of a positive normal number. For a subnormal one: the bits of 2^52 times the number, minus 52 << 52.
 inline LogTerms log_terms(std::uint64_t bits) {
   constexpr std::uint64_t kBegin = 0x3fe6000000000000;  // 0.6875
   const std::uint64_t offset = bits - kBegin;
@@ -44,7 +44,7 @@ inline LogTerms log_terms(std::uint64_t bits) {
           z_rest * entry.inverse};
 }
 
-// log(1 + r) - r: minimax on [-0.0042, 0.0078], relative error of the logarithm 2^-67
+// Returns log(1 + r) - r by a minimax polynomial on [-0.0042, 0.0078]; the relative error of the logarithm is 2^-67.
 inline double log_series(double r) {
   const double r2 = r * r;
   const double p = (0x1.5555555555551p-2 + r * -0x1.fffffffffdd7dp-3) +
@@ -53,25 +53,25 @@ inline double log_series(double r) {
   return r2 * (-0.5 + r * p);
 }
 
-// log x with a relative error of 2^-67, for pow
+// Returns log x with a relative error of 2^-67, as pow() needs it.
 inline Sum log_sum(const LogTerms& t) {
   const double r = t.r + t.r_low;
   const double top = upper_half(r);
   const double rest = (t.r - top) + t.r_low;
   const double r2 = r * r;
-  // log(1 + r) - r + r^2 / 2: minimax, relative error of the logarithm 2^-73
+  // r^3 p is log(1 + r) - r + r^2 / 2, a minimax polynomial on the same interval; relative error of the logarithm 2^-73
   const double p = (0x1.5555555555555p-2 + r * -0x1.ffffffffffe5fp-3) +
                    r2 * ((0x1.99999999b3c89p-3 + r * -0x1.5555558d96366p-3) +
                          r2 * ((0x1.249247335a9a9p-3 + r * -0x1.ffc4f1782502ap-4) + r2 * 0x1.b0d98d4474b3ap-4));
   const Sum linear = fast_sum((t.e * kLn2 + t.entry.log_high) + t.r, t.r_low);
-  // -r^2 / 2, the first part exactly
+  // The upper part of -r^2 / 2 is exact.
   const Sum main = fast_sum(linear.hi, -0.5 * (top * top));
   const double low = (t.e * kLn2Low + t.entry.log_low) + r2 * (r * p);
-  return {main.hi, main.lo + (linear.lo + (low - 0.5 * (rest * (top + r))))};
+  return fast_sum(main.hi, main.lo + (linear.lo + (low - 0.5 * (rest * (top + r)))));
 }
 
-// true: the logarithm is finite, or it is set to what it is
-inline bool has_finite_log(double& x, std::uint64_t& bits, double& result) {
+// Sets `bits` for log_terms() and returns true, or returns false and sets `result` if the logarithm is not finite.
+inline bool has_finite_log(double x, std::uint64_t& bits, double& result) {
   bits = bits_of(x);
   if (bits - kLeastNormal < kInfinityBits - kLeastNormal) return true;
   if (magnitude(x) == 0) {
@@ -87,7 +87,8 @@ inline bool has_finite_log(double& x, std::uint64_t& bits, double& result) {
   return false;
 }
 
-// e * exponent_unit + log z / log base; the unit's upper part is short, so that products with e are exact
+// Returns e * unit + log z * factor, unit being the logarithm of 2 and factor 1 / log(base). unit.hi has 42 bits and
+// factor.hi has 27, so that their products are exact.
 inline double log_of_base(const LogTerms& t, const Sum& unit, const Sum& factor) {
   const Sum z = fast_sum(t.entry.log_high + t.r, t.r_low);
   const double top = upper_half(z.hi);
@@ -105,7 +106,7 @@ Parity parity_of(double y) {
   return (static_cast<std::uint64_t>(size) & 1) != 0 ? Parity::odd : Parity::even;
 }
 
-// of the number with these bits (see log_terms) and |y| in [2^-65, 2^63)
+// Returns the power of the number with these bits (see log_terms()), for |y| in [2^-65, 2^63).
 inline double pow_common(std::uint64_t x_bits, double y) {
   const Sum l = log_sum(log_terms(x_bits));
   const double l_top = upper_half(l.hi);
@@ -119,7 +120,7 @@ inline double pow_common(std::uint64_t x_bits, double y) {
 double pow_of_negative_or_special(double x, double y) {
   if (y == 0 || x == 1) return 1;
   if (x != x || y != y) return kNaN;
-  double x_size = magnitude(x);
+  const double x_size = magnitude(x);
   const double y_size = magnitude(y);
   if (y_size == kInfinity) {
     if (x_size == 1) return 1;

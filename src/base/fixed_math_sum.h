@@ -1,4 +1,7 @@
-// Double-double arithmetic and access to bits, for the files fixed_math*.cpp only.
+// Double-double arithmetic and access to the bits of doubles. Included by fixed_math*.cpp only.
+//
+// The polynomials in these files are minimax approximations from the Remez algorithm in 400-bit arithmetic. Their
+// coefficients were rounded to doubles one by one, the lowest first, and the remaining ones fitted again each time.
 #pragma once
 
 #include <bit>
@@ -16,32 +19,33 @@ inline constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 inline constexpr double kInfinity = std::numeric_limits<double>::infinity();
 inline constexpr std::uint64_t kSignBit = std::uint64_t{1} << 63;
 inline constexpr std::uint64_t kInfinityBits = std::uint64_t{0x7ff} << 52;
-/// Added to |x| < 2^51 and subtracted again, it rounds x to an integer; in between, the low bits are that integer.
+/// Rounds |x| < 2^51 to an integer when it is added and subtracted again. The low bits of the sum are the integer.
 inline constexpr double kRoundToInteger = 0x1.8p52;
 
 inline std::uint64_t bits_of(double x) { return std::bit_cast<std::uint64_t>(x); }
 inline double from_bits(std::uint64_t bits) { return std::bit_cast<double>(bits); }
 inline double magnitude(double x) { return from_bits(bits_of(x) & ~kSignBit); }
-/// |x| with the sign of `from`, for x >= 0.
+/// Returns x >= 0 with the sign of `from`.
 inline double with_sign(double x, double from) { return from_bits(bits_of(x) | (bits_of(from) & kSignBit)); }
-/// 2^exponent, of a normal number.
+/// Returns 2^exponent for an exponent in [-1022, 1023].
 inline double power_of_two(int exponent) { return from_bits(static_cast<std::uint64_t>(exponent + 1023) << 52); }
 
-/// The first 26 significant bits of x. Products of two of these, and with the 27 bits that are left, are exact.
+/// Returns the first 26 significant bits of x; the other 27 are x - upper_half(x). Products of two upper halves, or of
+/// an upper half and a number of 27 bits, are exact.
 inline double upper_half(double x) { return from_bits(bits_of(x) & ~((std::uint64_t{1} << 27) - 1)); }
 
-/// hi + lo, unevaluated.
+/// The unevaluated sum hi + lo.
 struct Sum {
   double hi, lo;
 };
 
-/// a + b without an error, if |a| >= |b| or a is 0 (Dekker 1971).
+/// Returns a + b exactly if |a| >= |b| or a is 0 (Dekker 1971).
 inline Sum fast_sum(double a, double b) {
   const double hi = a + b;
   return {hi, (a - hi) + b};
 }
 
-/// a * b with a relative error of 2^-106 (Dekker 1971, with factors split by truncation).
+/// Returns a * b with a relative error of 2^-106 (Dekker 1971, the factors being split by truncation).
 inline Sum product(double a, double b) {
   const double hi = a * b;
   const double ah = upper_half(a);

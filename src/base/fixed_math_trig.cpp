@@ -1,6 +1,6 @@
-// Sine, cosine and tangent: x = k pi/64 + r, a table of sines of k pi/64, and short polynomials for sin r and cos r - 1
-// (Tang 1991, table-driven). The sum sin(k pi/64 + r) = S + (C r + S (cos r - 1) + C (sin r - r)) is formed so that the
-// leading product C r is exact: C is in the table with 27 bits, and r is split in halves.
+// Sine, cosine and tangent, table-driven (Tang 1991): x = k pi/64 + r, a table with S and C, the sine and cosine of
+// k pi/64, and polynomials for sin r and cos r - 1. In the sum S + (C r + S (cos r - 1) + C (sin r - r)), the leading
+// product C r is exact: the table has C with 27 bits, and r is split in halves.
 #include "base/fixed_math.h"
 #include "base/fixed_math_sum.h"
 #include "base/fixed_math_trig_table.h"
@@ -20,19 +20,20 @@ using detail::upper_half;
 
 __extension__ typedef unsigned __int128 Wide;
 
-// An angle of index * pi/64 + hi + lo.
+// The angle index * pi/64 + hi + lo.
 struct ReducedAngle {
   unsigned index;
   double hi, lo;
 };
 
-// Minimax polynomials on |r| <= pi/128, in z = r^2: relative error 2^-67 and absolute error 2^-63.
+// Minimax polynomials in z = r^2 for sin r - r and cos r - 1 on |r| <= pi/128: the relative error of the sine is 2^-67,
+// the absolute error of the cosine is 2^-63.
 double sine_minus_angle(double r, double z) {
   return r * z * (-0x1.5555555555551p-3 + z * (0x1.111111106b45fp-7 + z * -0x1.a0183ed7de51fp-13));
 }
 double cosine_minus_one(double z) { return z * (-0.5 + z * (0x1.555555549db93p-5 + z * -0x1.6c153094094dap-10)); }
 
-// 256 bits from this bit of 1/(2 pi) on, the most significant word first.
+// Copies 256 bits of 1/(2 pi), beginning at this bit of the table, the most significant word first.
 void inverse_turn_window(int begin, std::uint64_t (&window)[4]) {
   const int first = begin >> 6;
   const int shift = begin & 63;
@@ -43,7 +44,7 @@ void inverse_turn_window(int begin, std::uint64_t (&window)[4]) {
   }
 }
 
-// The first 106 significant bits of a fixed-point fraction of a turn, in radians.
+// Converts a fixed-point fraction of a turn, of which it uses the first 106 significant bits, to radians.
 Sum radians_of(const std::uint64_t (&fraction)[4]) {
   int first = 0;
   while (first < 2 && fraction[first] == 0) first++;
@@ -52,7 +53,7 @@ Sum radians_of(const std::uint64_t (&fraction)[4]) {
   const std::uint64_t third = first < 2 ? fraction[first + 2] : 0;
   Wide top = (Wide{fraction[first]} << 64 | fraction[first + 1]) << shift;
   if (shift != 0) top |= third >> (64 - shift);
-  // 2^53 * hi + lo is the integer of the 106 leading bits
+  // the 106 leading bits as an integer: 2^53 * hi + lo
   const double hi = static_cast<double>(static_cast<std::uint64_t>(top >> 75));
   const double lo = static_cast<double>(static_cast<std::uint64_t>(top >> 22) & ((std::uint64_t{1} << 53) - 1));
   const double scale = detail::power_of_two(-53 - shift - 64 * first);
@@ -63,8 +64,9 @@ Sum radians_of(const std::uint64_t (&fraction)[4]) {
   return fast_sum(main.hi, main.lo + (turn.hi * kTwoPiLow + turn.lo * kTwoPi));
 }
 
-// Exact reduction of any |x| >= 2^-6 (Payne, Hanek 1983): of x / (2 pi), only the bits that matter below the binary
-// point are computed. What is left out is below 2^-200; no double comes nearer to a multiple of pi/64 than 2^-70.
+// Reduces any |x| >= 2^-6 (Payne, Hanek 1983): computes 256 bits of the fraction of x / (2 pi), whose integer part is
+// irrelevant. The absolute error of 2^-200 is small also for the doubles nearest to a multiple of pi/64, at about
+// 2^-66.
 ReducedAngle reduce_large(double x) {
   const std::uint64_t bits = bits_of(x) & ~detail::kSignBit;
   const std::uint64_t mantissa = (bits & ((std::uint64_t{1} << 52) - 1)) | std::uint64_t{1} << 52;
@@ -77,7 +79,7 @@ ReducedAngle reduce_large(double x) {
     fraction[i] = static_cast<std::uint64_t>(part);
     carry = static_cast<std::uint64_t>(part >> 64);
   }
-  // to the nearest 1/128 of a turn
+  // rounds to the nearest multiple of 1/128 turn
   unsigned index = (static_cast<unsigned>(fraction[0] >> 56) + 1) / 2;
   fraction[0] -= std::uint64_t{index} << 57;
   bool negative = (fraction[0] >> 63) != 0;
@@ -95,9 +97,9 @@ ReducedAngle reduce_large(double x) {
   return {index & 127u, negative ? -r.hi : r.hi, negative ? -r.lo : r.lo};
 }
 
-// Of a finite x with |x| >= 2^-27 (Cody, Waite 1980).
+// Reduces a finite x with |x| >= 2^-27 (Cody, Waite 1980).
 inline ReducedAngle reduce(double x) {
-  // pi/64 in three parts; multiples of the first two by up to 2^22 are exact
+  // pi/64 in three parts. Products of the first two with integers up to 2^22 are exact.
   constexpr double kStep1 = 0x1.921fb544p-5;
   constexpr double kStep2 = 0x1.0b4611a8p-39;
   constexpr double kStep3 = -0x1.d9cceba3f91f2p-71;
@@ -109,7 +111,7 @@ inline ReducedAngle reduce(double x) {
   const double main = x - n * kStep1;
   const double second = n * kStep2;
   const double exact_hi = main - second;
-  // close to a multiple of pi/64: three parts are too few
+  // Three parts do not suffice close to a multiple of pi/64.
   if (magnitude(exact_hi) < 0x1p-25 && size > 0x1p-6) return reduce_large(x);
   const double exact_lo = (main - exact_hi) - second;
   const double third = n * kStep3;
@@ -117,7 +119,7 @@ inline ReducedAngle reduce(double x) {
   return {static_cast<unsigned>(bits_of(shifted)) & 127u, hi, ((exact_hi - hi) - third) + exact_lo};
 }
 
-// The polynomials and halves of r, which the sine and the cosine share.
+// Polynomials and halves of r, shared by sine and cosine.
 struct AngleTerms {
   double sine, cosine, top, rest, full_sine;
   explicit AngleTerms(const ReducedAngle& a)
@@ -128,7 +130,7 @@ struct AngleTerms {
         full_sine(a.hi + sine) {}
 };
 
-// The sine of an entry's angle + r, with a relative error of 2^-61.
+// Returns the sine of the entry's angle + r with a relative error of 2^-61.
 inline Sum sine_sum(const SineEntry& e, const AngleTerms& t) {
   const Sum main = fast_sum(e.sine, e.cosine * t.top);
   return {main.hi,
@@ -138,7 +140,7 @@ inline Sum sine_sum(const SineEntry& e, const AngleTerms& t) {
 inline const SineEntry& sine_entry(const ReducedAngle& a) { return detail::kSines[a.index]; }
 inline const SineEntry& cosine_entry(const ReducedAngle& a) { return detail::kSines[(a.index + 32) & 127u]; }
 
-// |x| is in [2^-27, infinity)
+// True for |x| in [2^-27, infinity).
 inline bool is_common(double x) {
   return bits_of(magnitude(x)) - bits_of(0x1p-27) < detail::kInfinityBits - bits_of(0x1p-27);
 }
@@ -177,12 +179,12 @@ double tan(double x) {
   const Sum c_raw = sine_sum(cosine_entry(a), terms);
   const Sum s = fast_sum(s_raw.hi, s_raw.lo);
   const Sum c = fast_sum(c_raw.hi, c_raw.lo);
-  // the quotient, and once more what it leaves of the dividend
+  // The remainder of the division corrects the quotient.
   const double inverse = 1 / c.hi;
   const double q = s.hi * inverse;
   const Sum back = product(q, c.hi);
-  const double left = ((s.hi - back.hi) - back.lo) + (s.lo - q * c.lo);
-  return q + left * inverse;
+  const double remainder = ((s.hi - back.hi) - back.lo) + (s.lo - q * c.lo);
+  return q + remainder * inverse;
 }
 
 }  // namespace limber::fixed

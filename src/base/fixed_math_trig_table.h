@@ -1,16 +1,18 @@
-// Constants of the trigonometric functions, computed with 400 bits and more and rounded; for fixed_math_trig.cpp only.
+// Constants of the trigonometric functions, computed with 400 bits or more and rounded. Included by
+// fixed_math_trig.cpp only.
 #pragma once
 
 #include <cstdint>
 
 namespace limber::fixed::detail {
 
-/// sine + sine_low and cosine + cosine_low of an angle. The cosine has 27 significant bits, so that products are exact.
+/// sine + sine_low and cosine + cosine_low of an angle. `cosine` has 27 significant bits, so that its products with
+/// numbers of 26 bits are exact.
 struct SineEntry {
   double sine, sine_low, cosine, cosine_low;
 };
 
-/// At each multiple of pi/64 in one turn.
+/// Entry k is for the angle k pi/64; the table covers one turn.
 inline constexpr SineEntry kSines[] = {
     {0x0p+0, 0x0p+0, 0x1p+0, 0x0p+0},
     {0x1.91f65f10dd814p-5, -0x1.912bd0d569a9p-61, 0x1.ff621e4p-1, -0x1.0d250438af786p-30},
@@ -142,7 +144,7 @@ inline constexpr SineEntry kSines[] = {
     {-0x1.91f65f10dd814p-5, 0x1.912bd0d569a9p-61, 0x1.ff621e4p-1, -0x1.0d250438af786p-30},
 };
 
-/// 1/(2 pi) in binary, 64 digits a word, behind a word of zeros.
+/// 1/(2 pi) in binary, 64 bits per word, after a word of zeros.
 inline constexpr std::uint64_t kInverseTurn[] = {0,
                                                  0x28be60db9391054au,
                                                  0x7f09d5f47d4d3770u,

@@ -1,4 +1,4 @@
-// The math functions at length: ten million arguments of each against MPFR, and every float.
+// Long tests of the fixed math functions: ten million arguments of each function, and all floats, against MPFR.
 #include <gtest/gtest.h>
 
 #include <array>
@@ -38,7 +38,7 @@ TEST_P(LongMath, ErrorOfTenMillionIsBelowTheBound) {
   EXPECT_LE(all.ulps, f.max_ulps) << std::hexfloat << all.x << ", " << all.y;
 }
 
-// A function in single and double precision, and the C library's in double precision.
+// A function in single and double precision, the C library's function in double precision, and MPFR's.
 struct FloatFunction {
   const char* name;
   float (*single)(float);
@@ -47,7 +47,7 @@ struct FloatFunction {
   ExactUnary exact;
 };
 
-void PrintTo(const FloatFunction& f, std::ostream* out) { *out << f.name; }
+std::ostream& operator<<(std::ostream& out, const FloatFunction& f) { return out << f.name; }
 
 const auto kFloatFunctions = std::to_array<FloatFunction>({
     {"sinf", fixed::sinf, fixed::sin, std::sin, mpfr_sin},
@@ -67,7 +67,7 @@ const auto kFloatFunctions = std::to_array<FloatFunction>({
     {"cbrtf", fixed::cbrtf, fixed::cbrt, std::cbrt, mpfr_cbrt},
 });
 
-// Results that are not the correctly rounded ones, by less than an ulp, and others.
+// Counts of results that are next to the correctly rounded float, and of results that are further away.
 struct FloatErrors {
   std::atomic<std::uint64_t> misrounded{0}, wrong{0}, first_wrong{0};
 };
@@ -86,8 +86,8 @@ void compare_with_exact(const FloatFunction& f, float x, float result, FloatErro
   errors.wrong++;
 }
 
-// If all doubles nearby are the same float, a reference with an error of some ulps is enough, and is twenty times as
-// fast as MPFR.
+// Compares with the C library if all doubles near its result round to the same float, otherwise with MPFR, which is
+// twenty times slower.
 void compare_floats(const FloatFunction& f, std::uint64_t begin, std::uint64_t end, FloatErrors& errors) {
   constexpr double kNear = 0x1p-51;
   for (std::uint64_t i = begin; i < end; i++) {
