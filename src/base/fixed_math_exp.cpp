@@ -21,6 +21,7 @@ namespace {
 
 using detail::bits_of;
 using detail::exp_sum;
+using detail::exp_terms;
 using detail::fast_sum;
 using detail::kInfinity;
 using detail::kNaN;
@@ -55,7 +56,7 @@ struct HalfExponentials {
   Sum up, down;
 };
 HalfExponentials half_exponentials(double x) {
-  const detail::ExpTerms t = detail::exp_terms(x, 0);
+  const detail::ExpTerms t = exp_terms(x, 0, x);
   const detail::ExpSeries series(t.r);
   const ScaledSum up = detail::exp_entry(t.index, series.even + series.odd);
   const ScaledSum down = detail::exp_entry(-t.index, series.even - series.odd);
@@ -67,7 +68,7 @@ HalfExponentials half_exponentials(double x) {
 // Returns e^x / 2 for x > 40, infinity included.
 double half_exponential(double x) {
   if (x > 711) return kInfinity;
-  ScaledSum s = exp_sum(x, 0);
+  ScaledSum s = exp_sum(exp_terms(x, 0, x));
   s.exponent--;
   return detail::scaled(s);
 }
@@ -78,7 +79,7 @@ double exp(double x) {
   const double size = magnitude(x);
   if (!(size < 746)) return x != x ? kNaN : x > 0 ? kInfinity : 0;
   if (size < 0x1p-54) return 1;
-  return detail::scaled(exp_sum(x, 0));
+  return detail::scaled(exp_sum(exp_terms(x, 0, x)));
 }
 
 double exp2(double x) {
@@ -125,7 +126,7 @@ double tanh(double x) {
   }
   if (!(size <= 20)) return x == x ? with_sign(1, x) : kNaN;
   // tanh x = 1 - 2 / (e^2x + 1)
-  const ScaledSum e = exp_sum(2 * size, 0);
+  const ScaledSum e = exp_sum(exp_terms(2 * size, 0, 2 * size));
   const double scale = power_of_two(e.exponent);
   const Sum power = fast_sum(e.hi * scale, e.lo * scale);
   const Sum raw = fast_sum(power.hi, 1);

@@ -19,13 +19,13 @@ struct ExpTerms {
   double r;
 };
 
-/// Reduces x + x_low, for |x| < 1000 and |x_low| < 2^-15.3 (Cody, Waite 1980).
-inline ExpTerms exp_terms(double x, double x_low) {
+/// Reduces x + x_low, whose rounded value is sum, for |x| < 1000 and |x_low| < 0.02 (Cody, Waite 1980).
+inline ExpTerms exp_terms(double x, double x_low, double sum) {
   // ln2/128 in two parts. Products of the first with integers up to 2^19 are exact.
   constexpr double kStep1 = 0x1.62e42fef8p-8;
   constexpr double kStep2 = 0x1.1cf79abc9e3b4p-43;
   constexpr double kPerStep = 0x1.71547652b82fep+7;
-  const double shifted = x * kPerStep + kRoundToInteger;
+  const double shifted = sum * kPerStep + kRoundToInteger;
   const double n = shifted - kRoundToInteger;
   return {static_cast<int>(static_cast<std::uint32_t>(bits_of(shifted))), (x - n * kStep1) + (x_low - n * kStep2)};
 }
@@ -46,9 +46,9 @@ inline ScaledSum exp_entry(int index, double growth) {
   return {entry.hi, entry.lo + entry.hi * growth, index >> 7};
 }
 
-/// Returns e^(x + x_low) with a relative error of 2^-61, by a table of 2^(k/128) and a polynomial (Tang 1989).
-inline ScaledSum exp_sum(double x, double x_low) {
-  const ExpTerms t = exp_terms(x, x_low);
+/// Returns e raised to the number of these terms, by a table of 2^(k/128) and a polynomial (Tang 1989). The relative
+/// error is 2^-61.
+inline ScaledSum exp_sum(const ExpTerms& t) {
   const ExpSeries series(t.r);
   return exp_entry(t.index, series.odd + series.even);
 }

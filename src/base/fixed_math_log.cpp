@@ -53,7 +53,7 @@ inline double log_series(double r) {
   return r2 * (-0.5 + r * p);
 }
 
-// Returns log x with a relative error of 2^-67, as pow() needs it.
+// Returns log x with a relative error of 2^-67, as pow() needs it. |lo| is below 2^-15 |hi|.
 inline Sum log_sum(const LogTerms& t) {
   const double r = t.r + t.r_low;
   const double top = upper_half(r);
@@ -67,7 +67,7 @@ inline Sum log_sum(const LogTerms& t) {
   // The upper part of -r^2 / 2 is exact.
   const Sum main = fast_sum(linear.hi, -0.5 * (top * top));
   const double low = (t.e * kLn2Low + t.entry.log_low) + r2 * (r * p);
-  return fast_sum(main.hi, main.lo + (linear.lo + (low - 0.5 * (rest * (top + r)))));
+  return {main.hi, main.lo + (linear.lo + (low - 0.5 * (rest * (top + r))))};
 }
 
 // Sets `bits` for log_terms() and returns true, or returns false and sets `result` if the logarithm is not finite.
@@ -114,7 +114,7 @@ inline double pow_common(std::uint64_t x_bits, double y) {
   const double exponent = l_top * y_top;
   const double low = ((l.hi - l_top) + l.lo) * y + l_top * (y - y_top);
   if (!(magnitude(exponent) < 746)) return exponent > 0 ? kInfinity : 0;
-  return detail::scaled(detail::exp_sum(exponent, low));
+  return detail::scaled(detail::exp_sum(detail::exp_terms(exponent, low, exponent + low)));
 }
 
 double pow_of_negative_or_special(double x, double y) {
