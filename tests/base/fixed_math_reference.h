@@ -83,7 +83,7 @@ inline const std::vector<MathFunction>& math_functions() {
       {"log10", fixed::log10, mpfr_log10, nullptr, nullptr, 0.51, 0, 8, 0x373b52703d480642},
       {"sinh", fixed::sinh, mpfr_sinh, nullptr, nullptr, 0.55, -8, 8, 0x268e551530c4a6fc},
       {"cosh", fixed::cosh, mpfr_cosh, nullptr, nullptr, 0.51, -8, 8, 0x7ed121902149c4b6},
-      {"tanh", fixed::tanh, mpfr_tanh, nullptr, nullptr, 0.55, -8, 8, 0x549e426c6d02a90e},
+      {"tanh", fixed::tanh, mpfr_tanh, nullptr, nullptr, 0.52, -8, 8, 0xed64bfd42c005439},
       {"cbrt", fixed::cbrt, mpfr_cbrt, nullptr, nullptr, 0.51, -8, 8, 0xc85f9b9c73cce24d},
       {"atan2", nullptr, nullptr, fixed::atan2, mpfr_atan2, 0.51, -8, 8, 0x13d94e9893b860cf},
       {"pow", nullptr, nullptr, fixed::pow, mpfr_pow, 0.51, 0, 30, 0x9c46c502a1ca3fc2},
