@@ -1,5 +1,5 @@
-// From a validated datagram to messages, by oscpack. Every numeric tag becomes a number: clients differ in what they
-// send for one slider.
+// From a validated datagram to messages. Every numeric tag becomes a number: clients differ in what they send for one
+// slider.
 #pragma once
 
 #include <cstddef>

@@ -1,4 +1,4 @@
-// From messages to datagrams, by oscpack. Strict in sending: f, i and s only, as the seed has it.
+// From messages to datagrams. Limber itself sends f, i and s only, as ofxDabPhysics does.
 #pragma once
 
 #include <array>
@@ -21,8 +21,9 @@ struct PacketBuffer {
 /// its first NUL. Empty when it is larger than a datagram. The span lies in `buffer`. [any]
 std::span<const char> encode_message(const Message& message, PacketBuffer& buffer);
 
-/// Writes the arguments as the tags say: i h f (numbers, clamped), T (a truth, as T or F), s, N; arrays in [ ]. Tags
-/// fit the arguments. Empty when it is larger than a datagram. [any]
+/// Writes the arguments as the tags say: i h f d (numbers, clamped), T or F (a boolean, as T or F), s, S, c (text), N,
+/// I (an argument without a value), r m t b (hexadecimal digits as text); arrays in [ ]. Each tag but [ ] has an
+/// argument that fits it. Empty when it is larger than a datagram. [any]
 std::span<const char> encode_tagged(const Message& message, std::string_view tags, PacketBuffer& buffer);
 
 /// `/pong <tick i> <time f>`; ticks beyond 31 bits begin again at 0. [any]

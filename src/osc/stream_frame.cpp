@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <bit>
-#include <cstring>
 #include <string_view>
 
 #include "base/check.h"
@@ -16,12 +15,6 @@ namespace {
 
 constexpr std::size_t kDefaultBundle = 1472;  // what an Ethernet frame holds
 constexpr std::size_t kMostUnbundled = 20;    // bodies, where nothing else is wished
-
-void put_u32(char* to, std::uint32_t value) {
-  static_assert(std::endian::native == std::endian::little);
-  value = __builtin_bswap32(value);
-  std::memcpy(to, &value, sizeof value);
-}
 
 // appends text with its NULs up to a multiple of 4
 void append_text(std::vector<char>& bytes, std::string_view text) {
@@ -43,7 +36,7 @@ bool write_numbers(char* to, const std::vector<std::uint32_t>& joints, std::uint
     const std::size_t from = std::size_t{joint} + offset;
     if (from + W > live.size()) return false;
     for (std::uint32_t k = 0; k < W; k++, to += 4) {
-      put_u32(to, std::bit_cast<std::uint32_t>(static_cast<float>(live[from + k])));
+      store_u32(to, std::bit_cast<std::uint32_t>(static_cast<float>(live[from + k])));
     }
   }
   return true;
@@ -114,7 +107,7 @@ void StreamFrame::end_datagram() {
     std::size_t from = begin_;
     for (std::size_t i = 0; i < open_.size(); i++) {
       bundle.resize(bundle.size() + 4);
-      put_u32(bundle.data() + bundle.size() - 4, open_[i]);
+      store_u32(bundle.data() + bundle.size() - 4, open_[i]);
       Numbers& numbers = numbers_[first_numbers_ + i];
       numbers.to = static_cast<std::uint32_t>(begin_ + bundle.size() + (numbers.to - from));
       bundle.insert(bundle.end(), bytes_.begin() + static_cast<std::ptrdiff_t>(from),

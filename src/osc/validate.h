@@ -1,5 +1,5 @@
-// The validator: says of a datagram whether it is whole OSC within our limits, and never reads past its end. oscpack
-// sees nothing that has not passed here: it crashes on some packets and hangs on others.
+// The validator: reports whether a datagram is a complete OSC packet within our limits, and never reads past its end.
+// oscpack gets no packet that has not passed here: it crashes on some and hangs on others.
 #pragma once
 
 #include <cstddef>

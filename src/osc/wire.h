@@ -1,7 +1,10 @@
-// The sizes of OSC on the wire that those who read and those who write it share.
+// Sizes and byte order of OSC packets, for the code that reads them and the code that writes them.
 #pragma once
 
+#include <bit>
 #include <cstddef>
+#include <cstdint>
+#include <cstring>
 
 namespace limber {
 
@@ -10,5 +13,25 @@ inline constexpr std::size_t kBundleHeader = 16;      ///< "#bundle", its NUL, e
 
 /// Bytes of a text of that length with its NULs up to a multiple of 4: one to four of them.
 constexpr std::size_t padded(std::size_t length) { return (length / 4 + 1) * 4; }
+
+/// Numbers of a packet are big-endian, at any address.
+inline std::uint32_t load_u32(const char* from) {
+  std::uint32_t value = 0;
+  std::memcpy(&value, from, sizeof value);
+  return std::endian::native == std::endian::little ? __builtin_bswap32(value) : value;
+}
+inline std::uint64_t load_u64(const char* from) {
+  std::uint64_t value = 0;
+  std::memcpy(&value, from, sizeof value);
+  return std::endian::native == std::endian::little ? __builtin_bswap64(value) : value;
+}
+inline void store_u32(char* to, std::uint32_t value) {
+  if constexpr (std::endian::native == std::endian::little) value = __builtin_bswap32(value);
+  std::memcpy(to, &value, sizeof value);
+}
+inline void store_u64(char* to, std::uint64_t value) {
+  if constexpr (std::endian::native == std::endian::little) value = __builtin_bswap64(value);
+  std::memcpy(to, &value, sizeof value);
+}
 
 }  // namespace limber

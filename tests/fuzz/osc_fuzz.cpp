@@ -1,4 +1,4 @@
-// Arbitrary bytes through the way of a datagram into a live world: validator, oscpack, receiver, inbox, dispatch, Lua
+// Arbitrary bytes through the way of a datagram into a live world: validator, codec, receiver, inbox, dispatch, Lua
 // handlers, physics. The world lives on from input to input, so a fault may need those before it: the same -seed and
 // -runs find it again.
 #include <sys/mman.h>
@@ -14,8 +14,10 @@
 #include "engine/engine.h"
 #include "engine/everything.h"
 #include "fuzz/target.h"
+#include "osc/codec.h"
 #include "osc/encode.h"
 #include "osc/receiver.h"
+#include "osc/same_decoded.h"
 #include "osc/subscribers.h"
 #include "osc/validate.h"
 
@@ -102,10 +104,27 @@ class Desk {
     const std::uint64_t malformed = counters.malformed;
     const std::uint64_t received = counters.received;
     const bool whole = packet_fault(data, size) == nullptr;
+    check_codecs(data, size, whole);
     receiver_.take(data, size, kFrom);
-    // oscpack takes whatever the validator has passed, and nothing comes of what it has not
+    // the codec takes whatever the validator has passed, and nothing comes of what it has not
     must(counters.malformed - malformed == (whole ? 0u : 1u));
     must(counters.received - received == (whole ? messages_in(data, size) : 0u));
+  }
+
+  // our own codec on every input; oscpack's, where it is correct, on valid ones: both find and write the same
+  void check_codecs(const char* data, std::size_t size, bool whole) {
+    const Result<Decoded> own = own_codec::decode(data, size);
+    must(own.ok() == whole);
+#if LIMBER_OSCPACK
+    if (!whole) return;
+    const Result<Decoded> oscpack = oscpack_codec::decode(data, size);
+    must(oscpack.ok() && osc_test::same(*own, *oscpack));
+    for (const Message& message : own->messages) {
+      const std::span<const char> ours = own_codec::encode(message, buffer_);
+      const std::span<const char> theirs = oscpack_codec::encode(message, oscpack_buffer_);
+      must(std::ranges::equal(ours, theirs));
+    }
+#endif
   }
 
   void play() {
@@ -197,6 +216,7 @@ class Desk {
                      clock_};
   Subscribers subscribers_{link_, clock_, [this](const Outgoing& out) { check_packet(out.message); }};
   PacketBuffer buffer_;
+  [[maybe_unused]] PacketBuffer oscpack_buffer_;
   std::vector<Command> commands_;
   std::vector<Outgoing> outgoing_;
   std::size_t bodies_ = 0;

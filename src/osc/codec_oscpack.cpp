@@ -1,31 +1,18 @@
-// oscpack's reading side stays in this file, and so do its exceptions.
-#include "osc/decode.h"
-
+// oscpack's codec. Its exceptions stay in this file.
 #include <exception>
 
-#include <fmt/format.h>
 #include <oscpack/osc/OscReceivedElements.h>
 
-namespace limber {
+#include "osc/codec.h"
+#include "osc/message_builder.h"
+#include "osc/message_encoder.h"
+#include "osc/oscpack_writer.h"
+
+namespace limber::oscpack_codec {
 
 namespace {
 
 constexpr std::uint64_t kImmediately = 1;
-
-const char* refused_tag(char tag) {
-  switch (tag) {
-    case osc::BLOB_TYPE_TAG:
-      return "a blob (b)";
-    case osc::TIME_TAG_TYPE_TAG:
-      return "a time tag (t)";
-    case osc::MIDI_MESSAGE_TYPE_TAG:
-      return "a MIDI message (m)";
-    case osc::RGBA_COLOR_TYPE_TAG:
-      return "a packed colour (r)";
-    default:
-      return nullptr;
-  }
-}
 
 Arg argument_of(const osc::ReceivedMessageArgument& a) {
   switch (a.TypeTag()) {
@@ -56,25 +43,16 @@ Arg argument_of(const osc::ReceivedMessageArgument& a) {
 }
 
 void add_message(const osc::ReceivedMessage& received, Decoded& out) {
-  Message message;
-  message.address = received.AddressPattern();
-  message.args.reserve(received.ArgumentCount());
-  int level = 0;
+  MessageBuilder message(out, received.AddressPattern(), received.ArgumentCount());
   for (auto a = received.ArgumentsBegin(); a != received.ArgumentsEnd(); ++a) {
     if (a->IsArrayBegin() || a->IsArrayEnd()) {
-      level += a->IsArrayBegin() ? 1 : -1;
-      if (level < 2) continue;
-      out.refused.push_back({std::move(message.address), "an array inside an array is not taken; send one flat array"});
-      return;
+      if (!message.bracket(a->TypeTag())) return;
+      continue;
     }
-    if (const char* what = refused_tag(a->TypeTag())) {
-      out.refused.push_back(
-          {std::move(message.address), fmt::format("{} is not taken; send numbers (i h f d T F) or text (s)", what)});
-      return;
-    }
-    message.args.push_back(argument_of(*a));
+    if (!message.accept(a->TypeTag())) return;
+    message.add(argument_of(*a));
   }
-  out.messages.push_back(std::move(message));
+  message.finish();
 }
 
 // the validator has bounded the depth
@@ -88,9 +66,23 @@ void add_bundle(const osc::ReceivedBundle& bundle, Decoded& out) {
   }
 }
 
+// no call throws where the size was computed
+template <class Encode>
+std::span<const char> without_exceptions(const Encode& encode) {
+  try {
+    return encode();
+  } catch (const std::exception&) {
+    const bool oscpack_found_the_buffer_too_small = true;
+    LIMBER_CHECK(!oscpack_found_the_buffer_too_small);
+    return {};
+  }
+}
+
+using Encoder = MessageEncoder<OscpackWriter>;
+
 }  // namespace
 
-Result<Decoded> decode_packet(const char* data, std::size_t size) {
+Result<Decoded> decode(const char* data, std::size_t size) {
   try {
     Decoded decoded;
     const osc::ReceivedPacket packet(data, static_cast<osc::osc_bundle_element_size_t>(size));
@@ -108,4 +100,16 @@ Result<Decoded> decode_packet(const char* data, std::size_t size) {
   }
 }
 
-}  // namespace limber
+std::span<const char> encode(const Message& message, PacketBuffer& buffer) {
+  return without_exceptions([&] { return Encoder::message(message, buffer); });
+}
+
+std::span<const char> encode_tagged(const Message& message, std::string_view tags, PacketBuffer& buffer) {
+  return without_exceptions([&] { return Encoder::tagged(message, tags, buffer); });
+}
+
+std::span<const char> encode_pong(std::uint64_t tick, double time, PacketBuffer& buffer) {
+  return without_exceptions([&] { return Encoder::pong(tick, time, buffer); });
+}
+
+}  // namespace limber::oscpack_codec

@@ -1,0 +1,31 @@
+// Compares what two codecs made of one packet, to the bit.
+#pragma once
+
+#include <algorithm>
+#include <bit>
+#include <cstdint>
+
+#include "osc/decode.h"
+
+namespace limber::osc_test {
+
+inline bool same(const Arg& a, const Arg& b) {
+  return a.kind == b.kind && std::bit_cast<std::uint64_t>(a.number) == std::bit_cast<std::uint64_t>(b.number) &&
+         a.text == b.text;
+}
+
+inline bool same(const Message& a, const Message& b) {
+  return a.address == b.address &&
+         std::ranges::equal(a.args, b.args, [](const Arg& x, const Arg& y) { return same(x, y); });
+}
+
+inline bool same(const Decoded& a, const Decoded& b) {
+  const auto equal = [](const Message& x, const Message& y) { return same(x, y); };
+  const auto rejected = [](const RefusedMessage& x, const RefusedMessage& y) {
+    return x.address == y.address && x.text == y.text;
+  };
+  return a.time_tag == b.time_tag && std::ranges::equal(a.messages, b.messages, equal) &&
+         std::ranges::equal(a.refused, b.refused, rejected);
+}
+
+}  // namespace limber::osc_test
