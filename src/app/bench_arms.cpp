@@ -10,6 +10,7 @@
 
 #include "app/bench_times.h"
 #include "base/check.h"
+#include "base/system/process.h"
 #include "sim/bullet_phases.h"
 
 namespace limber {
@@ -48,11 +49,11 @@ struct ArmSide {
   void play(Loop& loop, double& time, const ArmScene& scene, int count, const std::function<void()>& after = {}) {
     for (int i = 0; i < count; i++) {
       loop.drive(time);
-      const double work_start = thread_seconds();
-      const double start = clock_seconds();
+      const double work_start = system::thread_seconds();
+      const double start = system::clock_seconds();
       loop.tick();
-      ticks.add(clock_seconds() - start);
-      work.add(thread_seconds() - work_start);
+      ticks.add(system::clock_seconds() - start);
+      work.add(system::thread_seconds() - work_start);
       if (after) after();
       time += scene.step * scene.substeps;
     }
@@ -94,12 +95,12 @@ struct Phases {
 double raw_bytes_per_part(const ArmScene& scene) {
   ArmScene none = scene;
   none.arms = 0;
-  const double before = heap_bytes();
+  const double before = system::heap_bytes();
   RawLoop empty(none);
-  const double world = heap_bytes() - before;
+  const double world = system::heap_bytes() - before;
   RawLoop full(scene);
   for (int i = 0; i < 2; i++) full.tick();
-  return (heap_bytes() - before - 2 * world) / (scene.arms * (scene.parts + 1));
+  return (system::heap_bytes() - before - 2 * world) / (scene.arms * (scene.parts + 1));
 }
 
 // inside Bullet, of the fastest of some ticks
@@ -144,7 +145,7 @@ ArmScene direct_arm_scene(int arms) {
 BenchArms::BenchArms(const ArmScene& scene, int threads) : scene_(scene), engine_(link_, options_with(threads)) {
   LIMBER_CHECK(engine_.start().ok());
   World& world = engine_.world();
-  heap_when_empty_ = heap_bytes();
+  heap_when_empty_ = system::heap_bytes();
   set(world.store(), world.id(), World::table(), "timestep", {scene.step * scene.substeps});
   set(world.store(), world.id(), World::table(), "substeps", {static_cast<double>(scene.substeps)});
   set(world.store(), world.id(), World::table(), "solver_iterations", {static_cast<double>(scene.solver_iterations)});
@@ -210,7 +211,7 @@ nlohmann::ordered_json bench_arms(const ArmScene& scene, int warm_ticks, int tic
   BenchArms arms(scene);
   double time = arms.time();
   warm.play(arms, time, scene, warm_ticks);
-  const double bytes = (heap_bytes() - arms.heap_when_empty()) / moving;
+  const double bytes = (system::heap_bytes() - arms.heap_when_empty()) / moving;
   std::unique_ptr<RawLoop> raw;
   double raw_time = 0;
   if (compare_raw) {

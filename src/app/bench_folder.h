@@ -1,18 +1,18 @@
 // BenchFolder: a show's folder of the bench's own, in the system's place for such; it goes when the bench is over.
 #pragma once
 
-#include <unistd.h>
-
 #include <filesystem>
 #include <string>
 
 #include <fmt/format.h>
 
+#include "base/system/process.h"
+
 namespace limber {
 
 class BenchFolder {
  public:
-  BenchFolder() : path_(std::filesystem::temp_directory_path() / fmt::format("limber_bench_{}", ::getpid())) {
+  BenchFolder() : path_(std::filesystem::temp_directory_path() / fmt::format("limber_bench_{}", system::process_id())) {
     std::filesystem::create_directories(path_ / "scripts");
   }
   ~BenchFolder() {

@@ -43,9 +43,9 @@ Json keep(const BenchFolder& folder, int arms, const std::string& more, int tick
   double before = 0;
   double grown = 0;
   for (int i = 0; i < ticks; i++) {
-    const double start = thread_seconds();
+    const double start = system::thread_seconds();
     engine.tick();
-    const double seconds = thread_seconds() - start;
+    const double seconds = system::thread_seconds() - start;
     if (engine.history().newest_tick() != engine.world().tick()) {
       plain.add(seconds);
       continue;
@@ -60,9 +60,9 @@ Json keep(const BenchFolder& folder, int arms, const std::string& more, int tick
   const auto keys = static_cast<double>(ticks / 60 - 1);
   for (int i = 0; i < 3; i++) {
     link.inbox.push({{{"/transport/rewind", {Arg::of(0.9)}}}, {Hand::osc, 0x7f000001, 4000}});
-    const double start = thread_seconds();
+    const double start = system::thread_seconds();
     engine.idle();
-    back.add(thread_seconds() - start);
+    back.add(system::thread_seconds() - start);
     for (int k = 0; k < 54; k++) engine.tick();
   }
   return {{"tick_us", Samples::in_microseconds(plain.at(0.5))},

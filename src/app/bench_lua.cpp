@@ -1,8 +1,6 @@
 // Scenes in a folder of their own, played by the engine; behaviours say what a tick spent on them.
 #include "app/bench_lua.h"
 
-#include <unistd.h>
-
 #include <filesystem>
 #include <fstream>
 #include <functional>
@@ -16,6 +14,7 @@
 #include "app/bench_times.h"
 #include "app/paths.h"
 #include "base/log.h"
+#include "base/system/process.h"
 #include "engine/engine.h"
 #include "sim/behavior_list.h"
 
@@ -29,7 +28,7 @@ using Json = nlohmann::ordered_json;
 class BenchShow {
  public:
   BenchShow(const std::string& scene, const std::string& behavior) {
-    folder_ = std::filesystem::temp_directory_path() / fmt::format("limber_bench_{}", ::getpid());
+    folder_ = std::filesystem::temp_directory_path() / fmt::format("limber_bench_{}", system::process_id());
     std::filesystem::create_directories(folder_ / "scripts");
     std::filesystem::create_directories(folder_ / "behaviors_lua");
     std::ofstream(folder_ / "scripts" / "scene.lua") << scene;

@@ -1,10 +1,6 @@
 // OSC scenes: an engine with arms, the program's own receiver and streams, a client of a few lines.
 #include "app/bench_osc.h"
 
-#include <netinet/in.h>
-#include <poll.h>
-#include <sys/socket.h>
-
 #include <array>
 #include <atomic>
 #include <chrono>
@@ -15,8 +11,9 @@
 #include "app/bench_arms.h"
 #include "app/bench_times.h"
 #include "base/random.h"
+#include "base/system/udp_socket.h"
+#include "base/system/wait.h"
 #include "engine/snapshot.h"
-#include "osc/batch.h"
 #include "osc/encode.h"
 #include "osc/network.h"
 #include "osc/receiver.h"
@@ -68,9 +65,9 @@ double messages_per_second(BenchArms& arms, const std::vector<Packet>& packets, 
   Receiver receiver(arms.link(), {}, {}, clock);
   double best = 0;
   for (int round = 0; round < 12; round++) {
-    const double start = clock_seconds();
+    const double start = system::clock_seconds();
     for (const Packet& packet : packets) receiver.take(packet.data(), packet.size(), {0x7f000001, 9});
-    double seconds = clock_seconds() - start;
+    double seconds = system::clock_seconds() - start;
     // a tick takes so much of them
     for (int work = 0; work < 2 * messages; work += Engine::kTickWork) {
       arms.tick();
@@ -84,22 +81,20 @@ double messages_per_second(BenchArms& arms, const std::vector<Packet>& packets, 
 // a socket of a client on this machine
 class Client {
  public:
-  explicit Client(std::uint16_t port)
-      : socket_(std::move(*open_udp({0x7f000001, 0}))), to_(socket_address({0x7f000001, port})) {}
+  explicit Client(std::uint16_t port) : socket_(std::move(*system::open_udp({0x7f000001, 0}))), to_{0x7f000001, port} {}
 
-  void send(const Packet& packet) {
-    (void)sendto(socket_.fd(), packet.data(), packet.size(), 0, reinterpret_cast<const sockaddr*>(&to_), sizeof to_);
-  }
+  void send(const Packet& packet) { (void)system::send_datagram(socket_.fd(), to_, packet); }
   // whether something came within a second
   bool receive() {
-    pollfd waiting{socket_.fd(), POLLIN, 0};
+    system::Waiting waiting{.fd = socket_.fd()};
     std::array<char, 2048> bytes;
-    return poll(&waiting, 1, 1000) > 0 && recv(socket_.fd(), bytes.data(), bytes.size(), MSG_DONTWAIT) > 0;
+    return system::wait_ready({&waiting, 1}, std::chrono::seconds(1)) &&
+           system::receive_bytes(socket_.fd(), bytes.data(), bytes.size()) > 0;
   }
 
  private:
-  Socket socket_;
-  sockaddr_in to_;
+  system::UdpSocket socket_;
+  Endpoint to_;
 };
 
 OscOptions loopback_only() {
@@ -114,17 +109,17 @@ Json burst(BenchArms& arms, Network& network, const std::vector<Packet>& packets
   const auto arrived = [&] { return counters.received.load(); };
   const std::uint64_t before = arrived();
   Client client(network.bound().front().port);
-  const double start = clock_seconds();
+  const double start = system::clock_seconds();
   std::thread sender([&] {
     for (const Packet& packet : packets) client.send(packet);
   });
   // until nothing has come for a while
   double last = start;
-  for (std::uint64_t seen = before; seen < before + packets.size() && clock_seconds() - last < 0.5;) {
+  for (std::uint64_t seen = before; seen < before + packets.size() && system::clock_seconds() - last < 0.5;) {
     arms.tick();
     if (arrived() == seen) continue;
     seen = arrived();
-    last = clock_seconds();
+    last = system::clock_seconds();
   }
   sender.join();
   arms.tick();
@@ -162,10 +157,10 @@ nlohmann::ordered_json bench_osc_latency(const BenchOptions&) {
   int lost = 0;
   Samples pings, values;
   const auto ask = [&](const Packet& packet, Samples& times) {
-    const double start = clock_seconds();
+    const double start = system::clock_seconds();
     client.send(packet);
     if (client.receive()) {
-      times.add(clock_seconds() - start);
+      times.add(system::clock_seconds() - start);
     } else {
       lost++;
     }
@@ -198,18 +193,19 @@ nlohmann::ordered_json bench_osc_out(const BenchOptions&) {
   scene.parts = 6;
   BenchArms arms(scene);
   arms.tick();
-  const Result<Socket> out = open_udp({0x7f000001, 0});
-  const Result<Socket> in = open_udp({0x7f000001, 0});
-  if (!out || !in) return {{"fault", out ? in.error() : out.error()}};
+  system::UdpSender out;
+  const Result<void> opened = out.open();
+  const Result<system::UdpSocket> in = system::open_udp({0x7f000001, 0});
+  if (!opened || !in) return {{"fault", opened ? in.error() : opened.error()}};
 
   // someone who reads, so that the kernel does all its work
   std::atomic<bool> done{false};
   std::thread reader([&] {
     std::vector<char> bytes(65536);
     while (!done) {
-      pollfd waiting{in->fd(), POLLIN, 0};
-      if (poll(&waiting, 1, 20) <= 0) continue;
-      while (recv(in->fd(), bytes.data(), bytes.size(), MSG_DONTWAIT) > 0) continue;
+      system::Waiting waiting{.fd = in->fd()};
+      if (!system::wait_ready({&waiting, 1}, std::chrono::milliseconds(20))) continue;
+      while (system::receive_bytes(in->fd(), bytes.data(), bytes.size()) > 0) continue;
     }
   });
   StreamTarget wish;
@@ -218,13 +214,13 @@ nlohmann::ordered_json bench_osc_out(const BenchOptions&) {
   Samples fill, send;
   bool segmentation = true;
   for (int i = 0; i < kFrames; i++) {
-    const double start = thread_seconds();
+    const double start = system::thread_seconds();
     frame.lay_out(snapshot->roster, wish);
     frame.fill(*snapshot);
-    const double filled = thread_seconds();
-    (void)send_batch(out->fd(), in->local(), frame.bytes(), frame.datagram_sizes(), segmentation);
+    const double filled = system::thread_seconds();
+    (void)out.send(in->local(), frame.bytes(), frame.datagram_sizes(), segmentation);
     fill.add(filled - start);
-    send.add(thread_seconds() - filled);
+    send.add(system::thread_seconds() - filled);
   }
   done = true;
   reader.join();

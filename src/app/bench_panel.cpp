@@ -24,9 +24,9 @@ class BenchPanel {
     for (int i = 0; i < count; i++) {
       arms.engine().idle();
       clock_ += 1.0 / 60;
-      const double begin = thread_seconds();
+      const double begin = system::thread_seconds();
       gui_.frame({1600, 900, 1, clock_});
-      samples.add(thread_seconds() - begin);
+      samples.add(system::thread_seconds() - begin);
     }
     return samples;
   }

@@ -73,15 +73,15 @@ Json draw(const PictureScene& scene, int warm, int frames) {
     const double mix = 1.0 * (i % kFramesATick) / kFramesATick;
     if (i == warm) {
       (*renderer)->finish();
-      begin = clock_seconds();
+      begin = system::clock_seconds();
     }
-    const double begin_own = thread_seconds();
+    const double begin_own = system::thread_seconds();
     const Result<void> drawn = (*renderer)->draw(before, now, mix, scene.width, scene.height);
     if (!drawn) return {{"error", drawn.error()}};
-    if (i >= warm) own.add(thread_seconds() - begin_own);
+    if (i >= warm) own.add(system::thread_seconds() - begin_own);
   }
   (*renderer)->finish();
-  const double a_frame = (clock_seconds() - begin) / frames;
+  const double a_frame = (system::clock_seconds() - begin) / frames;
   return {{"quality", scene.quality_name},
           {"size", fmt::format("{} x {}", scene.width, scene.height)},
           {"parts", scene.arms * 17},

@@ -44,9 +44,9 @@ class ArmPresets {
 
  private:
   double tick() {
-    const double start = thread_seconds();
+    const double start = system::thread_seconds();
     arms_.tick();
-    return thread_seconds() - start;
+    return system::thread_seconds() - start;
   }
 
   BenchArms arms_;

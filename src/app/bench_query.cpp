@@ -1,10 +1,6 @@
 // The clients are a few lines over plain sockets; one thread reads for all of them.
 #include "app/bench_query.h"
 
-#include <netinet/in.h>
-#include <poll.h>
-#include <sys/socket.h>
-
 #include <array>
 #include <atomic>
 #include <chrono>
@@ -17,6 +13,8 @@
 #include "app/bench_arms.h"
 #include "app/bench_times.h"
 #include "app/query_doors.h"
+#include "base/system/socket.h"
+#include "base/system/wait.h"
 
 namespace limber {
 
@@ -38,24 +36,23 @@ std::string text_frame(const std::string& text) {
 }
 
 // connects, asks to be a WebSocket and listens to everything at once
-Socket connect_client(std::uint16_t port, int number) {
-  Socket client(socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0));
-  const sockaddr_in at = socket_address({0x7f000001, port});
-  if (connect(client.fd(), reinterpret_cast<const sockaddr*>(&at), sizeof at) != 0) return {};
+system::Descriptor connect_client(std::uint16_t port, int number) {
+  system::Descriptor client = system::connect_tcp({0x7f000001, port});
+  if (!client.open()) return {};
   std::string words =
       "GET / HTTP/1.1\r\nHost: localhost\r\nUpgrade: websocket\r\nConnection: Upgrade\r\nSec-WebSocket-Version: 13\r\n"
       "Sec-WebSocket-Key: dGhlIHNhbXBsZSBub25jZQ==\r\n\r\n";
   // an answer first: what comes before it would be no frame
-  if (send(client.fd(), words.data(), words.size(), MSG_NOSIGNAL) < 0) return {};
+  if (system::send_bytes(client.fd(), words) < 0) return {};
   std::array<char, 1024> answer;
-  if (recv(client.fd(), answer.data(), answer.size(), 0) <= 0) return {};
+  if (system::receive_bytes(client.fd(), answer.data(), answer.size()) <= 0) return {};
   words.clear();
   for (int i = 0; i < kPaths; i++) {
     const std::string path =
         fmt::format("/physics/body/arm{}/part/part{}/position", (number + i) % kListenedArms + 1, i % 16 + 1);
     words += text_frame(fmt::format(R"({{"COMMAND":"LISTEN","DATA":"{}"}})", path));
   }
-  if (send(client.fd(), words.data(), words.size(), MSG_NOSIGNAL) < 0) return {};
+  if (system::send_bytes(client.fd(), words) < 0) return {};
   return client;
 }
 
@@ -75,20 +72,20 @@ class Clients {
 
  private:
   void read() {
-    std::vector<pollfd> polled;
-    for (const Socket& s : sockets_) polled.push_back({s.fd(), POLLIN, 0});
+    std::vector<system::Waiting> waiting;
+    for (const system::Descriptor& s : sockets_) waiting.push_back({.fd = s.fd()});
     std::vector<char> buffer(1 << 16);
     while (!over_) {
-      poll(polled.data(), polled.size(), 20);
-      for (const pollfd& p : polled) {
-        if ((p.revents & POLLIN) == 0) continue;
-        const ssize_t n = recv(p.fd, buffer.data(), buffer.size(), MSG_DONTWAIT);
+      (void)system::wait_ready(waiting, std::chrono::milliseconds(20));
+      for (const system::Waiting& w : waiting) {
+        if (!w.ready) continue;
+        const std::ptrdiff_t n = system::receive_bytes(w.fd, buffer.data(), buffer.size());
         if (n > 0) bytes_ += static_cast<std::uint64_t>(n);
       }
     }
   }
 
-  std::vector<Socket> sockets_;
+  std::vector<system::Descriptor> sockets_;
   std::atomic<bool> over_{false};
   std::atomic<std::uint64_t> bytes_{0};
   std::thread reader_;
@@ -96,14 +93,14 @@ class Clients {
 
 // so many ticks in real time: what each takes of the processor
 void play(BenchArms& arms, int ticks, Samples& samples) {
-  double next = clock_seconds();
+  double next = system::clock_seconds();
   for (int i = 0; i < ticks; i++) {
     arms.drive(arms.time());
-    const double begin = thread_seconds();
+    const double begin = system::thread_seconds();
     arms.tick();
-    samples.add(thread_seconds() - begin);
+    samples.add(system::thread_seconds() - begin);
     next += kTick;
-    std::this_thread::sleep_for(std::chrono::duration<double>(next - clock_seconds()));
+    std::this_thread::sleep_for(std::chrono::duration<double>(next - system::clock_seconds()));
   }
 }
 
@@ -126,9 +123,9 @@ nlohmann::ordered_json bench_query(const BenchOptions& options) {
     Samples first;
     play(arms, 20, first);  // each is told all values once
     const std::uint64_t before = clients.bytes();
-    const double begin = clock_seconds();
+    const double begin = system::clock_seconds();
     play(arms, ticks, listened);
-    seconds += clock_seconds() - begin;
+    seconds += system::clock_seconds() - begin;
     bytes += clients.bytes() - before;
   }
   server.stop();

@@ -58,7 +58,7 @@ class Played {
     bool seen = false;
     while (!seen || more > 0) {
       link_.outbox.drain(out_);
-      const double now = clock_seconds();
+      const double now = system::clock_seconds();
       for (const Outgoing& o : out_) {
         if (o.message.address != "/version") continue;
         if (last_ > 0) gaps.add(now - last_);
@@ -105,7 +105,7 @@ nlohmann::ordered_json reload(std::string_view robot, int arms, int saves) {
   Samples latency;
   played.listen(0, 10, quiet);
   for (int version = 1; version <= saves; version++) {
-    const double start = clock_seconds();
+    const double start = system::clock_seconds();
     save(folder, robot, arms, version);
     played.listen(version, 2, near);
     latency.add(played.first() - start);

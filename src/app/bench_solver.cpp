@@ -35,9 +35,9 @@ struct Side {
     steps = 0;
   }
   void step() {
-    const double start = thread_seconds();
+    const double start = system::thread_seconds();
     player->step();
-    times.add_least(steps++, thread_seconds() - start);
+    times.add_least(steps++, system::thread_seconds() - start);
     worst.take(player->figures());
   }
   Json figures() const {

@@ -21,12 +21,12 @@ nlohmann::ordered_json bench_spawn(const BenchOptions&) {
   World& world = engine.world();
   ModelLibrary library;
 
-  const double start = clock_seconds();
+  const double start = system::clock_seconds();
   const auto model = library.load_urdf(file);
   if (!model) return {{"fault", model.error()}};
   const Result<Body*> first = world.add_body(*model, "arm", BuildOptions{});
   if (!first) return {{"fault", first.error()}};
-  const double loaded = clock_seconds();
+  const double loaded = system::clock_seconds();
   for (int i = 1; i <= kCopies; i++) {
     const Result<Body*> copy = world.copy_body(**first, fmt::format("arm{}", i));
     LIMBER_CHECK(copy.ok());
@@ -35,9 +35,9 @@ nlohmann::ordered_json bench_spawn(const BenchOptions&) {
     pose.position += Vec3(2.0 * (i % kSide), 2.0 * row, 0);
     (*copy)->set_pose(pose);
   }
-  const double copied = clock_seconds();
+  const double copied = system::clock_seconds();
   engine.tick();
-  const double ticked = clock_seconds();
+  const double ticked = system::clock_seconds();
   const auto milliseconds = [](double seconds) { return rounded(seconds * 1e3, 2); };
   return {{"copies", kCopies},
           {"parts", (kCopies + 1) * (*first)->parts().size()},

@@ -54,9 +54,9 @@ struct Show {
   void tick() {
     // from another thread, as the network's come: not from memory that is near
     if (!engine.replays()) std::thread([this] { push_messages(link, random); }).join();
-    const double start = thread_seconds();
+    const double start = system::thread_seconds();
     engine.tick();
-    seconds += thread_seconds() - start;
+    seconds += system::thread_seconds() - start;
   }
   void end() {
     LIMBER_CHECK(link.counters.refused.load() == 0);
@@ -97,8 +97,8 @@ Beside play_beside(const BenchFolder& folder, int ticks) {
 double seconds_of_a_look() {
   Samples looks;
   for (int i = 0; i < 999; i++) {
-    const double start = thread_seconds();
-    looks.add(thread_seconds() - start);
+    const double start = system::thread_seconds();
+    looks.add(system::thread_seconds() - start);
   }
   return looks.at(0.5);
 }
@@ -125,13 +125,13 @@ Recording record_beside(const BenchFolder& folder, int ticks) {
     push_messages(link, random);
     link.inbox.drain(commands);
     for (const Command& command : commands) link.inbox.push(command);
-    const double begin = thread_seconds();
+    const double begin = system::thread_seconds();
     for (const Command& command : commands) recorder.message(command.messages[0], command.origin);
-    const double taken = thread_seconds();
+    const double taken = system::thread_seconds();
     engine.tick();
-    const double ticked = thread_seconds();
+    const double ticked = system::thread_seconds();
     recorder.end_tick(true, engine.world(), calls, [&] { return engine.state_hash(); });
-    sum.recorder += (thread_seconds() - ticked) + (taken - begin) - 2 * look;
+    sum.recorder += (system::thread_seconds() - ticked) + (taken - begin) - 2 * look;
     sum.tick += ticked - taken - look;
   }
   recorder.finish({}).reset();

@@ -17,9 +17,9 @@ double play_some(BenchArms& arms, int ticks) {
   double seconds = 0;
   for (int i = 0; i < ticks; i++) {
     arms.drive(arms.time());
-    const double start = clock_seconds();
+    const double start = system::clock_seconds();
     arms.tick();
-    seconds += clock_seconds() - start;
+    seconds += system::clock_seconds() - start;
   }
   return seconds;
 }

@@ -6,18 +6,11 @@
 #include <cstddef>
 #include <vector>
 
-#include <malloc.h>
 #include <nlohmann/json.hpp>
 
-#include "base/clock_seconds.h"
+#include "base/system/clock.h"
 
 namespace limber {
-
-/// Bytes that the program holds on its heap. [any]
-inline double heap_bytes() {
-  const struct mallinfo2 info = mallinfo2();
-  return static_cast<double>(info.uordblks) + static_cast<double>(info.hblkhd);
-}
 
 /// A figure with so many decimals, as many as it deserves.
 inline double rounded(double value, int decimals) {

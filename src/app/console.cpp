@@ -1,10 +1,6 @@
 // Which of the three ways, and the two that need no terminal.
 #include "app/console.h"
 
-#include <poll.h>
-#include <unistd.h>
-
-#include <cerrno>
 #include <cstdio>
 
 #include <fmt/format.h>
@@ -12,6 +8,9 @@
 #include "app/console_session.h"
 #include "app/console_terminal.h"
 #include "app/exit_code.h"
+#include "base/system/file.h"
+#include "base/system/process.h"
+#include "base/system/wait.h"
 #include "base/text.h"
 
 namespace limber {
@@ -55,15 +54,15 @@ class PipeLines {
 
  private:
   void wait() {
-    pollfd polled[2] = {{STDIN_FILENO, POLLIN, 0}, {session_.fd(), POLLIN, 0}};
-    if (poll(polled, 2, -1) < 0) return;
-    if (polled[1].revents != 0 && session_.has_news()) session_.show_news();
-    if (polled[0].revents == 0) return;
+    system::Waiting waiting[2] = {{.fd = system::kStandardInput}, {.fd = session_.fd()}};
+    if (!system::wait_ready(waiting, std::nullopt)) return;
+    if (waiting[1].ready && session_.has_news()) session_.show_news();
+    if (!waiting[0].ready) return;
     char bytes[16384];
-    const ssize_t got = read(STDIN_FILENO, bytes, sizeof bytes);
+    const std::ptrdiff_t got = system::read_some(system::kStandardInput, bytes, sizeof bytes);
     if (got > 0) {
       in_.append(bytes, static_cast<std::size_t>(got));
-    } else if (got == 0 || errno != EINTR) {
+    } else {
       over_ = true;
     }
   }
@@ -101,7 +100,7 @@ int console_command(const ConsoleCommand& command) {
   ConsoleLine hello;
   Result<ConsoleLink> link = choose_program(command.pid, hello);
   if (!link) return fail(kInput, "console: " + link.error());
-  const bool typed = isatty(STDIN_FILENO) != 0 && isatty(STDOUT_FILENO) != 0;
+  const bool typed = system::at_terminal();
   if (!command.expression && typed) return console_terminal(std::move(*link), hello);
   ConsoleSession session(std::move(*link));
   return command.expression ? evaluate_once(session, *command.expression) : evaluate_lines(session);

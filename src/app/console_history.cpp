@@ -1,18 +1,13 @@
 // The history's file.
 #include "app/console_history.h"
 
-#include <sys/stat.h>
-
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
 
-#include <fcntl.h>
-#include <unistd.h>
-
 #include "app/paths.h"
-#include "base/descriptor.h"
+#include "base/system/file.h"
 #include "base/text.h"
 
 namespace limber {
@@ -26,15 +21,6 @@ constexpr std::uintmax_t kMostFile = 4u << 20;  // a file that has grown beyond 
 bool worth_keeping(std::string_view line) {
   return !line.empty() && line.size() <= ConsoleHistory::kMostBytes && printable(line) == line &&
          line.find('\n') == std::string_view::npos && line.find_first_not_of(" \t") != std::string_view::npos;
-}
-
-bool write_all(int fd, std::string_view text) {
-  while (!text.empty()) {
-    const ssize_t n = write(fd, text.data(), text.size());
-    if (n <= 0) return false;
-    text.remove_prefix(static_cast<std::size_t>(n));
-  }
-  return true;
 }
 
 }  // namespace
@@ -67,9 +53,9 @@ void ConsoleHistory::add(std::string_view line) {
   if (file_.empty()) return;
   std::error_code ignored;
   fs::create_directories(fs::path(file_).parent_path(), ignored);
-  const Descriptor file(open(file_.c_str(), O_WRONLY | O_CREAT | O_APPEND | O_CLOEXEC, 0600));
+  const system::Descriptor file = system::open_file(file_, system::OpenMode::append_any, 0600);
   // one write: lines of several consoles don't mix
-  if (file.open()) write_all(file.fd(), std::string(line) + "\n");
+  if (file.open()) system::write_all(file.fd(), std::string(line) + "\n");
 }
 
 // the file anew, without what is too old or no text; the old one stays until the new one is whole
@@ -79,8 +65,8 @@ void ConsoleHistory::rewrite() const {
   for (const std::string& line : lines_) text += line + "\n";
   bool whole = false;
   {
-    const Descriptor file(open(fresh.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0600));
-    whole = file.open() && write_all(file.fd(), text);
+    const system::Descriptor file = system::open_file(fresh, system::OpenMode::replace, 0600);
+    whole = file.open() && system::write_all(file.fd(), text);
   }
   if (!whole || std::rename(fresh.c_str(), file_.c_str()) != 0) std::remove(fresh.c_str());
 }

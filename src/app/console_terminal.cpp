@@ -2,8 +2,6 @@
 #include "app/console_terminal.h"
 
 #include <histedit.h>
-#include <poll.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <cerrno>
@@ -18,6 +16,10 @@
 #include "app/console_history.h"
 #include "app/console_session.h"
 #include "app/exit_code.h"
+#include "base/system/file.h"
+#include "base/system/process.h"
+#include "base/system/signals.h"
+#include "base/system/wait.h"
 
 namespace limber {
 
@@ -90,13 +92,8 @@ Terminal::Terminal(ConsoleLink link) : session_(std::move(link), take_interrupt)
   el_set(edit_, EL_BIND, "^R", "em-inc-search-prev", nullptr);
 
   // Ctrl+C ends a wait, and comes in nowhere else
-  struct sigaction act {};
-  act.sa_handler = on_interrupt;
-  sigaction(SIGINT, &act, nullptr);
-  sigset_t interrupt;
-  sigemptyset(&interrupt);
-  sigaddset(&interrupt, SIGINT);
-  pthread_sigmask(SIG_BLOCK, &interrupt, nullptr);
+  system::handle_signal(SIGINT, on_interrupt);
+  system::block_signal(SIGINT);
 }
 
 Terminal::~Terminal() {
@@ -133,21 +130,19 @@ int Terminal::next_key(wchar_t* key) {
       *key = kCancel;
       return 1;
     }
-    pollfd polled[2] = {{STDIN_FILENO, POLLIN, 0}, {session_.ended() ? -1 : session_.fd(), POLLIN, 0}};
-    sigset_t none;
-    sigemptyset(&none);
-    if (ppoll(polled, 2, nullptr, &none) < 0) {
+    system::Waiting waiting[2] = {{.fd = system::kStandardInput}, {.fd = session_.ended() ? -1 : session_.fd()}};
+    if (!system::wait_ready_or_signal(waiting, std::nullopt)) {
       if (errno != EINTR) return -1;
       continue;
     }
-    if (polled[1].revents != 0 && session_.has_news()) {
+    if (waiting[1].ready && session_.has_news()) {
       fmt::print("\r\x1b[K");
       std::fflush(stdout);
       session_.show_news();
       el_set(edit_, EL_REFRESH);
     }
     if (session_.ended()) return 0;  // the end, as if by Ctrl+D
-    if (polled[0].revents == 0) continue;
+    if (!waiting[0].ready) continue;
     if (const int got = decode(key); got <= 1) return got;
   }
 }
@@ -155,8 +150,8 @@ int Terminal::next_key(wchar_t* key) {
 // 1: a character; 0: the end; -1: an error; 2: it is not whole yet
 int Terminal::decode(wchar_t* key) {
   char byte = 0;
-  const ssize_t got = read(STDIN_FILENO, &byte, 1);
-  if (got < 0 && (errno == EINTR || errno == EAGAIN)) return 2;
+  const std::ptrdiff_t got = system::read_some(system::kStandardInput, &byte, 1);
+  if (got < 0 && errno == EAGAIN) return 2;
   if (got <= 0) return got == 0 ? 0 : -1;
   const std::size_t length = std::mbrtowc(key, &byte, 1, &bytes_);
   if (length == static_cast<std::size_t>(-2)) return 2;

@@ -10,14 +10,15 @@
 #include <vector>
 
 #include <fmt/format.h>
-#include <sys/utsname.h>
-#include <unistd.h>
 
 #include "app/exit_code.h"
 #include "app/paths.h"
 #include "app/query_doors.h"
 #include "app/window.h"
 #include "base/build_info.h"
+#include "base/system/file.h"
+#include "base/system/process.h"
+#include "base/system/udp_socket.h"
 #include "base/text.h"
 #include "engine/link.h"
 #include "gui/fonts.h"
@@ -41,13 +42,6 @@ std::string system_name() {
     if (line.starts_with("PRETTY_NAME=")) return line.substr(13, line.size() - 14);
   }
   return "an unknown system";
-}
-
-long number_in(const char* path) {
-  std::ifstream file(path);
-  long number = 0;
-  file >> number;
-  return number;
 }
 
 bool check_ports(const std::vector<ListenAddress>& osc_in, const std::optional<ListenAddress>& query_at) {
@@ -77,7 +71,7 @@ bool check_ports(const std::vector<ListenAddress>& osc_in, const std::optional<L
 bool program_in_path(const std::string& name) {
   const char* const path = std::getenv("PATH");
   for (const std::string_view folder : split(path == nullptr ? "" : path, ':')) {
-    if (access(fmt::format("{}/{}", folder, name).c_str(), X_OK) == 0) return true;
+    if (system::is_executable(fmt::format("{}/{}", folder, name))) return true;
   }
   return false;
 }
@@ -106,12 +100,9 @@ int doctor_command(const DoctorCommand& command) {
   const Result<std::optional<std::vector<ListenAddress>>> query = parse_query(command.query);
   if (!query) return fail(kUsage, query.error());
 
-  utsname machine{};
-  uname(&machine);
   finding("ok", "limber", fmt::format("{} ({})", version(), commit()));
   finding("ok", "system",
-          fmt::format("{}, {} {}, {} cores", system_name(), machine.sysname, machine.machine,
-                      std::thread::hardware_concurrency()));
+          fmt::format("{}, {}, {} cores", system_name(), system::machine_name(), std::thread::hardware_concurrency()));
 
   const std::string data = data_dir();
   if (data.empty()) {
@@ -122,16 +113,18 @@ int doctor_command(const DoctorCommand& command) {
   }
   const bool ports = check_ports(*osc_in, query_address(*query, OscPlan{.listen = *osc_in, .targets = {}}));
 
-  const long buffer = number_in("/proc/sys/net/core/rmem_max");
+  const std::optional<long> buffer = system::max_receive_buffer();
   constexpr long kWanted = 4194304;
-  if (buffer >= kWanted) {
+  if (!buffer) {
+    finding("mind", "buffer", "this system does not tell how large a socket's buffer may be; long bursts may be lost");
+  } else if (*buffer >= kWanted) {
     finding("ok", "buffer",
-            fmt::format("the kernel grants {} bytes to a socket: bursts of 10 000 messages come through", buffer));
+            fmt::format("the kernel grants {} bytes to a socket: bursts of 10 000 messages come through", *buffer));
   } else {
     finding("mind", "buffer",
             fmt::format("the kernel grants {} bytes to a socket, bursts over some hundred messages may be lost; "
                         "sysctl -w net.core.rmem_max={} lifts that",
-                        buffer, kWanted));
+                        *buffer, kWanted));
   }
   finding("ok", "display", Window::has_display() ? "there is one, for the window" : "none; Limber plays headless");
   check_drawing();

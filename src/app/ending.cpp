@@ -3,22 +3,21 @@
 
 #include <cstdio>
 #include <cstdlib>
-#include <ctime>
 #include <utility>
 
 #include "app/exit_code.h"
+#include "base/system/signals.h"
 
 namespace limber {
 
 namespace {
-constexpr timespec kLook = {0, 20'000'000};
+constexpr auto kLook = std::chrono::milliseconds(20);
 constexpr int kMostLooks = 25;
 /// After another signal: it may have come with the first, as to a program and to its group.
 constexpr int kLooksMore = 12;
 }  // namespace
 
-Ending::Ending(const sigset_t& signals, std::function<void()> late)
-    : signals_(signals), late_(std::move(late)), thread_([this] { watch(); }) {}
+Ending::Ending(std::function<void()> late) : late_(std::move(late)), thread_([this] { watch(); }) {}
 
 Ending::~Ending() {
   done_.store(true);
@@ -28,9 +27,9 @@ Ending::~Ending() {
 void Ending::watch() {
   bool asked = false;
   for (int looks = 0, more = 0; !done_.load();) {
-    const int signal = sigtimedwait(&signals_, nullptr, &kLook);
+    const system::Signal signal = system::wait_for_signal(kLook);
     if (done_.load()) return;
-    asked = asked || (signal > 0 && signal != SIGUSR1);
+    asked = asked || signal == system::Signal::end;
     if (asked && ++more > kLooksMore) {
       std::fputs("limber: ended before all files were written\n", stderr);
       std::_Exit(kInput);

@@ -3,7 +3,6 @@
 #pragma once
 
 #include <atomic>
-#include <csignal>
 #include <functional>
 #include <thread>
 
@@ -11,8 +10,8 @@ namespace limber {
 
 class Ending {
  public:
-  /// The signals are blocked in every thread. `late` ends the program. [main]
-  Ending(const sigset_t& signals, std::function<void()> late);
+  /// Signals are blocked (system::block_signals) in every thread. `late` ends the program. [main]
+  explicit Ending(std::function<void()> late);
   ~Ending();
   Ending(const Ending&) = delete;
   Ending& operator=(const Ending&) = delete;
@@ -23,7 +22,6 @@ class Ending {
  private:
   void watch();
 
-  sigset_t signals_;
   std::function<void()> late_;
   std::atomic<bool> whole_{false};
   std::atomic<bool> done_{false};

@@ -14,7 +14,7 @@
 #include "app/motion_source.h"
 #include "app/paths.h"
 #include "app/progress.h"
-#include "app/signals.h"
+#include "base/system/signals.h"
 #include "base/text.h"
 #include "engine/take_reader.h"
 #include "motion/bvh.h"
@@ -190,8 +190,8 @@ int export_take(const ExportCommand& command, const std::function<bool()>& cance
 }
 
 int export_command(const ExportCommand& command) {
-  const sigset_t signals = block_signals();
-  return export_take(command, [&] { return signal_came(signals); });
+  system::block_signals();
+  return export_take(command, system::signal_came);
 }
 
 }  // namespace limber

@@ -1,12 +1,7 @@
 // Events of folders, or looking at the files; then the content decides.
 #include "app/file_watch.h"
 
-#include <sys/inotify.h>
-#include <sys/vfs.h>
-#include <unistd.h>
-
 #include <algorithm>
-#include <array>
 #include <filesystem>
 #include <utility>
 
@@ -16,27 +11,12 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::uint32_t kEvents =
-    IN_CLOSE_WRITE | IN_MOVED_TO | IN_CREATE | IN_DELETE | IN_MOVED_FROM | IN_DELETE_SELF | IN_MOVE_SELF | IN_ONLYDIR;
-
-// file systems that others change behind the kernel's back: NFS, 9P, SMB, CIFS, FUSE (virtiofs is one), Coda, AFS
-bool changes_unheard(const std::string& folder) {
-  struct statfs info {};
-  if (statfs(folder.c_str(), &info) != 0) return false;
-  constexpr std::array<std::uint32_t, 8> kTypes = {0x6969,     0x01021997, 0x517b,     0xff534d42,
-                                                   0xfe534d42, 0x65735546, 0x73757245, 0x5346414f};
-  return std::find(kTypes.begin(), kTypes.end(), static_cast<std::uint32_t>(info.f_type)) != kTypes.end();
-}
-
 }  // namespace
 
 FileWatch::FileWatch(Way way) : way_(way) {
-  if (way_ == Way::events) inotify_ = inotify_init1(IN_NONBLOCK | IN_CLOEXEC);
-  if (inotify_ < 0) way_ = Way::polling;
-}
-
-FileWatch::~FileWatch() {
-  if (inotify_ >= 0) close(inotify_);
+  if (way_ == Way::events) events_.emplace();
+  if (events_ && !events_->available()) events_.reset();
+  if (!events_) way_ = Way::polling;
 }
 
 void FileWatch::watch(const std::vector<SourceFile>& files, Time now) {
@@ -72,7 +52,7 @@ void FileWatch::want(std::map<std::string, std::set<std::string>>& folders, cons
 }
 
 void FileWatch::arm() {
-  if (inotify_ < 0) return;
+  if (!events_) return;
   std::map<std::string, std::set<std::string>> wanted;
   for (const auto& [file, stamp] : files_) {
     want(wanted, file);
@@ -83,8 +63,8 @@ void FileWatch::arm() {
   }
   std::map<int, Folder> folders;
   for (const auto& [folder, names] : wanted) {
-    const int number = inotify_add_watch(inotify_, folder.c_str(), kEvents);
-    if (number < 0 || changes_unheard(folder)) way_ = Way::polling;
+    const int number = events_->add(folder);
+    if (number < 0 || !system::reports_changes(folder)) way_ = Way::polling;
     if (number < 0) continue;
     // two paths may lead to one folder
     Folder& entry = folders[number];
@@ -92,7 +72,7 @@ void FileWatch::arm() {
     entry.names.insert(names.begin(), names.end());
   }
   for (const auto& [number, folder] : folders_) {
-    if (!folders.contains(number)) inotify_rm_watch(inotify_, number);
+    if (!folders.contains(number)) events_->remove(number);
   }
   folders_ = std::move(folders);
 }
@@ -104,27 +84,20 @@ std::optional<FileWatch::Time> FileWatch::due() const {
 }
 
 void FileWatch::read_events(Time now) {
-  alignas(inotify_event) std::array<char, 16384> block;
   bool moved = false;
-  for (ssize_t size = 0; (size = read(inotify_, block.data(), block.size())) > 0;) {
-    for (ssize_t at = 0; at < size;) {
-      const auto& event = *reinterpret_cast<const inotify_event*>(block.data() + at);
-      at += static_cast<ssize_t>(sizeof event + event.len);
-      const auto folder = folders_.find(event.wd);
-      const bool lost = (event.mask & IN_Q_OVERFLOW) != 0;
-      const bool itself = (event.mask & (IN_DELETE_SELF | IN_MOVE_SELF | IN_IGNORED)) != 0;
-      if (folder == folders_.end() && !lost) continue;
-      if (itself) {
-        inotify_rm_watch(inotify_, event.wd);
-        folders_.erase(folder);
-        moved = true;
-      } else if (!lost && !folder->second.names.contains(event.len > 0 ? event.name : "")) {
-        continue;
-      }
-      moved |= (event.mask & IN_ISDIR) != 0;
-      const bool open_file = (event.mask & IN_CREATE) != 0 && (event.mask & IN_ISDIR) == 0;
-      settle_at_ = now + (open_file ? kOpenFile : kQuiet);
+  for (const system::FolderEvent& event : events_->read()) {
+    const auto folder = folders_.find(event.folder);
+    const bool lost = event.folder < 0;
+    if (folder == folders_.end() && !lost) continue;
+    if (event.folder_gone) {
+      events_->remove(event.folder);
+      folders_.erase(folder);
+      moved = true;
+    } else if (!lost && !folder->second.names.contains(event.name)) {
+      continue;
     }
+    moved |= event.entry_is_folder;
+    settle_at_ = now + (event.may_be_open ? kOpenFile : kQuiet);
   }
   if (moved) arm();
 }
@@ -161,7 +134,7 @@ std::vector<std::string> FileWatch::take_changed() {
 }
 
 std::vector<std::string> FileWatch::poll(Time now) {
-  if (inotify_ >= 0) read_events(now);
+  if (events_) read_events(now);
   if (way_ == Way::polling) look(now);
   if (!settle_at_ || now < *settle_at_) return {};
   if (way_ == Way::polling && still_moving(now)) return {};

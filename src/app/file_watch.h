@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "base/system/folder_events.h"
 #include "model/file_stamp.h"
 #include "script/sources.h"
 
@@ -28,7 +29,6 @@ class FileWatch {
   static constexpr auto kOpenFile = std::chrono::milliseconds(500);
 
   explicit FileWatch(Way way = Way::events);
-  ~FileWatch();
   FileWatch(const FileWatch&) = delete;
   FileWatch& operator=(const FileWatch&) = delete;
 
@@ -36,7 +36,7 @@ class FileWatch {
   /// changed.
   void watch(const std::vector<SourceFile>& files, Time now);
   /// Becomes readable when something has happened; -1: nothing will.
-  int fd() const { return inotify_; }
+  int fd() const { return events_ ? events_->fd() : -1; }
   Way way() const { return way_; }
   /// When poll() is to be called even if nothing happens.
   std::optional<Time> due() const;
@@ -58,9 +58,9 @@ class FileWatch {
   std::vector<std::string> take_changed();
 
   Way way_;
-  int inotify_ = -1;
+  std::optional<system::FolderEvents> events_;
   std::map<std::string, FileStamp> files_;
-  std::map<int, Folder> folders_;  // by the kernel's number
+  std::map<int, Folder> folders_;  // by number
   std::optional<Time> settle_at_;
   std::optional<Time> next_look_;
   std::map<std::string, FileStamp> seen_moving_;

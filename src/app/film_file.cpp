@@ -1,14 +1,7 @@
-// ffmpeg in a process group of its own, so that Ctrl+C is heard by this program alone.
+// Frames go to ffmpeg or to a still each.
 #include "app/film_file.h"
 
-#include <fcntl.h>
-#include <spawn.h>
-#include <sys/wait.h>
-#include <unistd.h>
-
 #include <array>
-#include <cerrno>
-#include <csignal>
 #include <cstring>
 #include <filesystem>
 #include <vector>
@@ -86,8 +79,6 @@ Result<std::unique_ptr<FilmFile>> FilmFile::open(const std::string& name, int wi
 
 Result<void> FilmFile::start_ffmpeg(int width, int height, double fps) {
   beside_ = beside(name_);
-  std::array<int, 2> ends{};
-  if (pipe2(ends.data(), O_CLOEXEC) != 0) return Error{fmt::format("no pipe to ffmpeg: {}", std::strerror(errno))};
   const std::vector<std::string> words = {"ffmpeg",    "-nostdin",
                                           "-v",        "error",
                                           "-f",        "rawvideo",
@@ -101,31 +92,8 @@ Result<void> FilmFile::start_ffmpeg(int width, int height, double fps) {
                                           "-pix_fmt",  "yuv420p",
                                           "-movflags", "+faststart",
                                           "-y",        beside_};
-  std::vector<char*> argv;
-  argv.reserve(words.size() + 1);
-  for (const std::string& word : words) argv.push_back(const_cast<char*>(word.c_str()));
-  argv.push_back(nullptr);
-  posix_spawn_file_actions_t files;
-  posix_spawn_file_actions_init(&files);
-  posix_spawn_file_actions_adddup2(&files, ends[0], 0);
-  posix_spawnattr_t attributes;
-  posix_spawnattr_init(&attributes);
-  sigset_t none;
-  sigemptyset(&none);
-  sigset_t pipe_signal;
-  sigemptyset(&pipe_signal);
-  sigaddset(&pipe_signal, SIGPIPE);
-  posix_spawnattr_setsigmask(&attributes, &none);
-  posix_spawnattr_setsigdefault(&attributes, &pipe_signal);
-  posix_spawnattr_setpgroup(&attributes, 0);
-  posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETPGROUP | POSIX_SPAWN_SETSIGMASK | POSIX_SPAWN_SETSIGDEF);
-  const int fault = posix_spawnp(&ffmpeg_, "ffmpeg", &files, &attributes, argv.data(), environ);
-  posix_spawn_file_actions_destroy(&files);
-  posix_spawnattr_destroy(&attributes);
-  ::close(ends[0]);
-  pipe_ = ends[1];
+  const int fault = ffmpeg_.start(words);
   if (fault == 0) return {};
-  ffmpeg_ = -1;
   return Error{
       fmt::format("a video needs ffmpeg, which can't be called: {}; on Debian apt-get install ffmpeg, or draw "
                   "stills with --render shot_%05d.png",
@@ -133,10 +101,8 @@ Result<void> FilmFile::start_ffmpeg(int width, int height, double fps) {
 }
 
 FilmFile::~FilmFile() {
-  if (pipe_ >= 0) ::close(pipe_);
-  if (ffmpeg_ < 0) return;
-  ::kill(ffmpeg_, SIGKILL);
-  waitpid(ffmpeg_, nullptr, 0);
+  if (!ffmpeg_.started()) return;
+  ffmpeg_.kill();
   std::remove(beside_.c_str());
 }
 
@@ -146,30 +112,16 @@ std::string FilmFile::still(std::uint64_t number) const {
 }
 
 Result<void> FilmFile::add(const Pixels& frame) {
-  if (ffmpeg_ < 0) return write_png(frame, still(frames_++));
-  const std::uint8_t* from = frame.bytes.data();
-  std::size_t left = frame.bytes.size();
-  while (left > 0) {
-    const ssize_t n = ::write(pipe_, from, left);
-    if (n < 0 && errno == EINTR) continue;
-    if (n <= 0) return Error{fmt::format("ffmpeg took no more of '{}'; what it says stands above", printable(name_))};
-    from += n;
-    left -= static_cast<std::size_t>(n);
-  }
+  if (!ffmpeg_.started()) return write_png(frame, still(frames_++));
+  if (!ffmpeg_.write({reinterpret_cast<const char*>(frame.bytes.data()), frame.bytes.size()}))
+    return Error{fmt::format("ffmpeg took no more of '{}'; what it says stands above", printable(name_))};
   frames_++;
   return {};
 }
 
-bool FilmFile::end_ffmpeg() {
-  ::close(std::exchange(pipe_, -1));
-  int status = 0;
-  const pid_t ended = waitpid(std::exchange(ffmpeg_, -1), &status, 0);
-  return ended > 0 && WIFEXITED(status) && WEXITSTATUS(status) == 0;
-}
-
 Result<void> FilmFile::finish() {
-  if (ffmpeg_ < 0) return {};
-  const bool well = end_ffmpeg();
+  if (!ffmpeg_.started()) return {};
+  const bool well = ffmpeg_.finish();
   if (well && frames_ > 0 && std::rename(beside_.c_str(), name_.c_str()) == 0) return {};
   std::remove(beside_.c_str());
   if (frames_ == 0) return {};

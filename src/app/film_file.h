@@ -1,13 +1,12 @@
 // FilmFile: where the frames of a film go: a video by ffmpeg, or one PNG file each.
 #pragma once
 
-#include <sys/types.h>
-
 #include <cstdint>
 #include <memory>
 #include <string>
 
 #include "base/result.h"
+#include "base/system/child_process.h"
 #include "view/pixels.h"
 
 namespace limber {
@@ -31,15 +30,12 @@ class FilmFile {
  private:
   explicit FilmFile(std::string name) : name_(std::move(name)) {}
   Result<void> start_ffmpeg(int width, int height, double fps);
-  /// Waits for it; whether it ended well.
-  bool end_ffmpeg();
   std::string still(std::uint64_t number) const;
 
   std::string name_;
   std::string beside_;  // a video while it is made
   std::uint64_t frames_ = 0;
-  pid_t ffmpeg_ = -1;
-  int pipe_ = -1;
+  system::ChildProcess ffmpeg_;
 };
 
 }  // namespace limber

@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include "app/exit_code.h"
+#include "base/system/signals.h"
 #include "console/console_link.h"
 
 namespace limber {
@@ -18,9 +19,7 @@ using Kind = ConsoleLine::Kind;
 volatile std::sig_atomic_t told_to_end = 0;
 
 void end_at_a_signal() {
-  struct sigaction action {};
-  action.sa_handler = [](int) { told_to_end = 1; };  // without SA_RESTART: the wait ends
-  for (const int number : {SIGINT, SIGTERM}) sigaction(number, &action, nullptr);
+  for (const int number : {SIGINT, SIGTERM}) system::handle_signal(number, [](int) { told_to_end = 1; });
 }
 
 // a line at a time: seconds since the beginning, which way, who

@@ -1,9 +1,6 @@
 // Templates (src/app/templates, inside the program) with names filled in.
 #include "app/new.h"
 
-#include <fcntl.h>
-#include <unistd.h>
-
 #include <algorithm>
 #include <cerrno>
 #include <filesystem>
@@ -18,8 +15,8 @@
 #include "app/paths.h"
 #include "base/build_info.h"
 #include "base/check.h"
-#include "base/descriptor.h"
 #include "base/embedded.h"
+#include "base/system/file.h"
 #include "base/text.h"
 #include "script/files.h"
 #include "sim/behavior_type.h"
@@ -77,14 +74,8 @@ int write_new(const fs::path& path, std::string_view text) {
   std::error_code fault;
   fs::create_directories(path.parent_path(), fault);
   if (fault) return fault.value();
-  const Descriptor file(open(path.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666));
-  if (!file.open()) return errno;
-  while (!text.empty()) {
-    const ssize_t n = write(file.fd(), text.data(), text.size());
-    if (n <= 0) return errno;
-    text.remove_prefix(static_cast<std::size_t>(n));
-  }
-  return 0;
+  const system::Descriptor file = system::open_file(path.string(), system::OpenMode::create_new, 0666);
+  return file.open() && system::write_all(file.fd(), text) ? 0 : errno;
 }
 
 // writes it and says so; the exit code

@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include "base/build_info.h"
+#include "base/system/executable_path.h"
 
 namespace limber {
 
@@ -14,9 +15,9 @@ namespace fs = std::filesystem;
 
 std::string data_dir() {
   std::error_code fault;
-  const fs::path program = fs::read_symlink("/proc/self/exe", fault);
+  const fs::path program = system::executable_path();
   std::vector<fs::path> places;
-  if (!fault) {
+  if (!program.empty()) {
     // a checkout's build folder may lie deeper: build/asan
     const fs::path above = program.parent_path().parent_path();
     places = {above, above.parent_path(), above / "share/limber"};

@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <atomic>
 #include <chrono>
-#include <csignal>
 #include <cstdio>
 #include <cstdlib>
 #include <memory>
@@ -20,10 +19,11 @@
 #include "app/query_doors.h"
 #include "app/render.h"
 #include "app/scene_watch.h"
-#include "app/signals.h"
 #include "app/window_show.h"
 #include "base/build_info.h"
 #include "base/log.h"
+#include "base/system/signals.h"
+#include "base/system/thread.h"
 #include "base/text.h"
 #include "console/server.h"
 #include "engine/engine.h"
@@ -115,14 +115,9 @@ Result<EngineOptions> parse_engine(const PlayOptions& options, const std::string
   return engine;
 }
 
-enum class Heard : std::uint8_t { nothing, call, end };
+using system::Signal;
 
-// waits for a signal, so many milliseconds
-Heard listen(const sigset_t& signals, long ms = 1000) {
-  const timespec time = {ms / 1000, ms % 1000 * 1000000};
-  const int signal = sigtimedwait(&signals, nullptr, &time);
-  return signal < 0 ? Heard::nothing : signal == SIGUSR1 ? Heard::call : Heard::end;
-}
+Signal listen(std::chrono::milliseconds limit = std::chrono::seconds(1)) { return system::wait_for_signal(limit); }
 
 void print_status(const EngineLink& link) {
   const std::shared_ptr<const Snapshot> now = link.snapshots.read();
@@ -135,10 +130,10 @@ void print_status(const EngineLink& link) {
              link.counters.dropped.load() + link.counters.dropped_kernel.load() > 0 ? "  (some were lost)" : "");
 }
 
-// the engine on its thread; it calls the main thread by SIGUSR1 when the scene has run, and when the show is over
+// the engine on its thread; it calls the main thread when the scene has run, and when the show is over
 class Show {
  public:
-  explicit Show(Engine& engine) : engine_(engine), main_(pthread_self()), thread_([this] { play(); }) {}
+  explicit Show(Engine& engine) : engine_(engine), main_(system::this_thread()), thread_([this] { play(); }) {}
   ~Show() { end(); }
   Show(const Show&) = delete;
   Show& operator=(const Show&) = delete;
@@ -163,7 +158,7 @@ class Show {
   enum class State : std::uint8_t { starting, started, over };
 
   void play() {
-    pthread_setname_np(pthread_self(), "limber-sim");
+    system::name_this_thread("limber-sim");
     result_ = engine_.start();
     tell(State::started);
     go_.acquire();
@@ -172,7 +167,7 @@ class Show {
   }
   void tell(State state) {
     state_.store(state);
-    pthread_kill(main_, SIGUSR1);
+    system::call_thread(main_);
   }
 
   Engine& engine_;
@@ -180,7 +175,7 @@ class Show {
   std::atomic<State> state_{State::starting};
   std::atomic<bool> anyway_{false};
   std::counting_semaphore<2> go_{0};
-  pthread_t main_;
+  std::uint64_t main_;
   std::thread thread_;  // last: it starts when all else is there
 };
 
@@ -192,14 +187,14 @@ class Show {
 }
 
 // until the show is over by itself or somebody ends it; true: somebody did. `window`: null when headless
-bool watch(const Show& show, Engine& engine, const EngineLink& link, const sigset_t& signals, WindowShow* window) {
+bool watch(const Show& show, Engine& engine, const EngineLink& link, WindowShow* window) {
   while (!show.over()) {
     const WindowShow::End end = window != nullptr ? window->frame() : WindowShow::End::none;
     if (end == WindowShow::End::lost) window = nullptr;
     const bool closed = end == WindowShow::End::closed;
-    const Heard heard = listen(signals, window != nullptr ? 0 : 1000);
-    if (heard == Heard::nothing && window == nullptr) print_status(link);
-    if (heard != Heard::end && !closed) continue;
+    const Signal heard = listen(std::chrono::milliseconds(window != nullptr ? 0 : 1000));
+    if (heard == Signal::none && window == nullptr) print_status(link);
+    if (heard != Signal::end && !closed) continue;
     engine.stop();
     // somebody waits: a second, or for less once there was another signal; that may have come with the first, as to a
     // program and to its group, and is no reason to cut a tick of usual length
@@ -207,7 +202,7 @@ bool watch(const Show& show, Engine& engine, const EngineLink& link, const sigse
     Clock::time_point last = Clock::now() + std::chrono::milliseconds(900);
     while (!show.over() && Clock::now() < last) {
       const auto left = std::chrono::ceil<std::chrono::milliseconds>(last - Clock::now());
-      if (listen(signals, left.count()) != Heard::end) continue;
+      if (listen(left) != Signal::end) continue;
       last = std::min(last, Clock::now() + std::chrono::milliseconds(250));
     }
     if (!show.over()) leave("ended in the middle of a long tick: fewer substeps or solver_iterations would help");
@@ -276,7 +271,7 @@ std::unique_ptr<WindowShow> open_window(const PlayOptions& options, EngineLink& 
 }
 
 int play_scene(const PlayOptions& options, EngineOptions engine_options, const OscOptions& osc,
-               const QueryWish& query_wish, const sigset_t& signals) {
+               const QueryWish& query_wish) {
   EngineLink link;
   const std::string scene_file = engine_options.scene;
   Engine engine(link, std::move(engine_options));
@@ -286,7 +281,7 @@ int play_scene(const PlayOptions& options, EngineOptions engine_options, const O
   if ((!options.fast || options.watch) && options.replay.empty()) scene_watch.emplace(link, engine, scene_file);
   QueryServer query(link, query_doors(network, osc.allow));
   const auto close = [&](bool ended) {
-    Ending ending(signals, [&] {
+    Ending ending([&] {
       const int code = finish(options, engine, ended);
       std::fflush(nullptr);
       std::_Exit(code);
@@ -308,7 +303,7 @@ int play_scene(const PlayOptions& options, EngineOptions engine_options, const O
   {
     Show show(engine);
     while (!show.started()) {
-      if (listen(signals) == Heard::end) leave("ended while the scene was being read");
+      if (listen() == Signal::end) leave("ended while the scene was being read");
     }
     if (!show.result() && !may_wait(options)) return give_up(kInput, show.result().error());
     if (const Result<void> open = open_ports(link, osc, query_wish, network, query); !open)
@@ -322,13 +317,13 @@ int play_scene(const PlayOptions& options, EngineOptions engine_options, const O
     // Xlib ends the program when the display goes: the show goes on in its place, and the program ends with that
     Window::on_display_lost([&] {
       log_error("the display is lost; playing on headless");
-      const bool ended = watch(show, engine, link, signals, nullptr);
+      const bool ended = watch(show, engine, link, nullptr);
       show.end();
       const int code = close(ended);
       std::fflush(nullptr);
       std::_Exit(code);
     });
-    interrupted = watch(show, engine, link, signals, window.get());
+    interrupted = watch(show, engine, link, window.get());
     Window::on_display_lost({});
   }
   return close(interrupted);
@@ -348,7 +343,7 @@ std::string left_aside(const PlayOptions& options) {
 }
 
 // a still or a film: time goes as fast as it is drawn, and nobody comes in from outside
-int render_scene(const PlayOptions& options, EngineOptions engine_options, const sigset_t& signals) {
+int render_scene(const PlayOptions& options, EngineOptions engine_options) {
   EngineLink link;
   if (const std::string aside = left_aside(options); !aside.empty())
     fmt::print(stderr, "limber: stills and films hear and send nothing: {} {} left aside\n", aside,
@@ -356,14 +351,14 @@ int render_scene(const PlayOptions& options, EngineOptions engine_options, const
   const std::optional<double> duration = engine_options.duration;
   Engine engine(link, std::move(engine_options));
   if (const Result<void> started = engine.start(); !started) return fail(kInput, started.error());
-  const Rendered rendered = render(options.picture, engine, link, duration, [&] { return signal_came(signals); });
+  const Rendered rendered = render(options.picture, engine, link, duration, system::signal_came);
   return rendered.code != kFine ? rendered.code : finish(options, engine, rendered.cancelled);
 }
 
 }  // namespace
 
 int play_command(const PlayOptions& options) {
-  const sigset_t signals = block_signals();
+  system::block_signals();
   const bool replays = !options.replay.empty();
   fmt::print(stderr, "limber {} ({}): {}\n", version(), commit(), printable(replays ? options.replay : options.scene));
   if (Result<void> picture = check_picture(options.picture, options.duration); !picture)
@@ -380,8 +375,8 @@ int play_command(const PlayOptions& options) {
   Result<EngineOptions> engine_options = parse_engine(options, scene);
   if (!engine_options) return fail(kUsage, engine_options.error());
   if (scene.empty()) return fail(kInput, no_scene(options.scene, looked));
-  if (options.picture.offline()) return render_scene(options, std::move(*engine_options), signals);
-  return play_scene(options, std::move(*engine_options), *osc, *query, signals);
+  if (options.picture.offline()) return render_scene(options, std::move(*engine_options));
+  return play_scene(options, std::move(*engine_options), *osc, *query);
 }
 
 }  // namespace limber

@@ -8,7 +8,7 @@
 
 #include <fmt/format.h>
 
-#include "base/clock_seconds.h"
+#include "base/system/clock.h"
 
 namespace limber {
 
@@ -18,7 +18,7 @@ class Progress {
   Progress(std::string unit, std::uint64_t all) : unit_(std::move(unit)), all_(all) {}
   /// Says it on stderr where it is time to.
   void tell(std::uint64_t done) {
-    const double now = clock_seconds();
+    const double now = system::clock_seconds();
     if (now - said_ < kSayEvery || done == 0) return;
     said_ = now;
     const double rate = static_cast<double>(done) / (now - begin_);
@@ -35,7 +35,7 @@ class Progress {
 
   std::string unit_;
   std::uint64_t all_;
-  double begin_ = clock_seconds();
+  double begin_ = system::clock_seconds();
   double said_ = begin_;
 };
 

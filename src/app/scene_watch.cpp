@@ -1,11 +1,6 @@
 // Sleeps until a file, a parameter or the end calls.
 #include "app/scene_watch.h"
 
-#include <poll.h>
-#include <pthread.h>
-#include <sys/eventfd.h>
-#include <unistd.h>
-
 #include <algorithm>
 #include <array>
 #include <filesystem>
@@ -16,6 +11,8 @@
 #include <fmt/format.h>
 
 #include "base/log.h"
+#include "base/system/thread.h"
+#include "base/system/wait.h"
 #include "base/text.h"
 #include "script/files.h"
 
@@ -23,8 +20,8 @@ namespace limber {
 
 namespace {
 
-constexpr std::size_t kMostScenes = 1000;  // that are listed
-constexpr int kLate = 250;                 // ms; how often a reload that a take holds up is tried again
+constexpr std::size_t kMostScenes = 1000;        // that are listed
+constexpr std::chrono::milliseconds kLate{250};  // how often a reload that a take holds up is tried again
 
 std::string folder_of(const std::string& scene) {
   std::error_code fault;
@@ -39,15 +36,14 @@ SceneWatch::SceneWatch(EngineLink& link, Engine& engine, const std::string& scen
       engine_(engine),
       folder_(folder_of(scene)),
       takes_(ScriptFiles(scene, {}).show_folder() + "/takes"),
-      way_(way),
-      wake_(eventfd(0, EFD_NONBLOCK | EFD_CLOEXEC)) {
+      way_(way) {
   link_.ask_scenes = [this](const Message& message, const Origin& origin) {
     if (!wishes_.push({{message}, origin})) return refuse(message, origin, "too many questions about scenes at once");
-    wake();
+    wake_.notify();
   };
   link_.rerun_scene = [this] {
     rerun_.store(true);
-    wake();
+    wake_.notify();
   };
 }
 
@@ -60,20 +56,14 @@ void SceneWatch::start() {
 
 void SceneWatch::stop() {
   stop_.store(true);
-  wake();
+  wake_.notify();
   if (thread_.joinable()) thread_.join();
   link_.rerun_scene = nullptr;
   link_.ask_scenes = nullptr;
-  if (wake_ >= 0) close(std::exchange(wake_, -1));
-}
-
-void SceneWatch::wake() const {
-  const std::uint64_t one = 1;
-  if (wake_ >= 0 && write(wake_, &one, sizeof one) < 0) return;  // full: somebody is called already
 }
 
 void SceneWatch::run(FileWatch& files) {
-  pthread_setname_np(pthread_self(), "limber-watch");
+  system::name_this_thread("limber-watch");
   std::vector<Command> wishes;
   while (!stop_.load()) {
     sleep(files);
@@ -173,17 +163,16 @@ void SceneWatch::refuse(const Message& wish, const Origin& origin, const std::st
   link_.push_out({Outgoing::To::error, origin, error_message(wish.address, why)});
 }
 
-void SceneWatch::sleep(const FileWatch& files) const {
-  int wait = late_ ? kLate : -1;
+void SceneWatch::sleep(const FileWatch& files) {
+  std::optional<std::chrono::nanoseconds> limit;
+  if (late_) limit = kLate;
   if (const auto due = files.due()) {
     const auto now = FileWatch::Time::clock::now();
-    const auto left = std::chrono::ceil<std::chrono::milliseconds>(std::max(*due, now) - now);
-    wait = static_cast<int>(std::min<std::int64_t>(left.count(), late_ ? kLate : 60000));
+    limit = std::min<std::chrono::nanoseconds>(std::max(*due, now) - now, late_ ? kLate : std::chrono::minutes(1));
   }
-  std::array<pollfd, 2> calls{{{wake_, POLLIN, 0}, {files.fd(), POLLIN, 0}}};
-  ::poll(calls.data(), calls.size(), wait);
-  std::uint64_t count = 0;
-  if (calls[0].revents != 0 && read(wake_, &count, sizeof count) < 0) return;
+  std::array<system::Waiting, 2> calls{{{.fd = wake_.fd()}, {.fd = files.fd()}}};
+  (void)system::wait_ready(calls, limit);
+  wake_.clear();
 }
 
 }  // namespace limber

@@ -9,6 +9,7 @@
 
 #include "app/file_watch.h"
 #include "base/inbox.h"
+#include "base/system/wake.h"
 #include "engine/engine.h"
 
 namespace limber {
@@ -34,8 +35,7 @@ class SceneWatch {
   std::vector<std::string> scenes() const;
   std::vector<std::string> takes() const;
   void refuse(const Message& wish, const Origin& origin, const std::string& why);
-  void sleep(const FileWatch& files) const;
-  void wake() const;
+  void sleep(const FileWatch& files);
 
   EngineLink& link_;
   Engine& engine_;
@@ -43,7 +43,7 @@ class SceneWatch {
   std::string takes_;  // the folder of the show's
   FileWatch::Way way_;
   Inbox<Command> wishes_{64, std::size_t{1} << 16};  // messages about scenes
-  int wake_ = -1;
+  system::Wake wake_;
   bool late_ = false;  // something was saved while a take played; of the thread
   std::atomic<bool> stop_{false};
   std::atomic<bool> rerun_{false};

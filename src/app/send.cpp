@@ -2,11 +2,6 @@
 // handlers have heard the message too; then all answers have come.
 #include "app/send.h"
 
-#include <netinet/in.h>
-#include <poll.h>
-#include <sys/socket.h>
-#include <unistd.h>
-
 #include <algorithm>
 #include <functional>
 #include <optional>
@@ -14,12 +9,14 @@
 #include <fmt/format.h>
 
 #include "app/exit_code.h"
-#include "base/clock_seconds.h"
+#include "base/system/clock.h"
+#include "base/system/udp_socket.h"
+#include "base/system/wait.h"
 #include "base/text.h"
 #include "engine/traffic.h"
 #include "osc/decode.h"
 #include "osc/encode.h"
-#include "osc/socket.h"
+#include "osc/endpoint.h"
 #include "osc/validate.h"
 
 namespace limber {
@@ -43,10 +40,11 @@ Result<Endpoint> endpoint_named(const std::string& text) {
 
 // what came in one datagram; messages that are none are nobody's answer
 std::vector<Message> receive(int fd, double seconds) {
-  pollfd polled{fd, POLLIN, 0};
-  if (poll(&polled, 1, static_cast<int>(std::max(seconds, 0.0) * 1000) + 1) <= 0) return {};
+  system::Waiting waiting{.fd = fd};
+  const auto limit = std::chrono::milliseconds(static_cast<int>(std::max(seconds, 0.0) * 1000) + 1);
+  if (!system::wait_ready({&waiting, 1}, limit)) return {};
   std::vector<char> bytes(65536);
-  const ssize_t got = recv(fd, bytes.data(), bytes.size(), 0);
+  const std::ptrdiff_t got = system::receive_bytes(fd, bytes.data(), bytes.size());
   if (got <= 0 || packet_fault(bytes.data(), static_cast<std::size_t>(got)) != nullptr) return {};
   Result<Decoded> decoded = decode_packet(bytes.data(), static_cast<std::size_t>(got));
   return decoded ? std::move(decoded->messages) : std::vector<Message>();
@@ -64,9 +62,9 @@ Replies show_answers(int fd, double wait, bool late, const std::function<void()>
   int asked = 1;
   bool heard = !late;
   ask();
-  const double end = clock_seconds() + wait;
-  while (!answers.whole && clock_seconds() < end) {
-    for (const Message& message : receive(fd, end - clock_seconds())) {
+  const double end = system::clock_seconds() + wait;
+  while (!answers.whole && system::clock_seconds() < end) {
+    for (const Message& message : receive(fd, end - system::clock_seconds())) {
       if (message.address == kLast) {
         answers.last = asked == 2;
         if (asked++ == 1) ask();
@@ -88,9 +86,7 @@ Replies show_answers(int fd, double wait, bool late, const std::function<void()>
 bool send_message(int fd, const Endpoint& to, const Message& message) {
   PacketBuffer buffer;
   const std::span<const char> packet = encode_message(message, buffer);
-  const sockaddr_in at = socket_address(to);
-  return !packet.empty() &&
-         sendto(fd, packet.data(), packet.size(), 0, reinterpret_cast<const sockaddr*>(&at), sizeof at) >= 0;
+  return !packet.empty() && system::send_datagram(fd, to, packet) == 0;
 }
 
 }  // namespace
@@ -110,7 +106,7 @@ int send_command(const SendCommand& command) {
   for (const std::string& word : command.words) message.args.push_back(arg_of(word));
   const Result<Endpoint> to = endpoint_named(command.to);
   if (!to) return fail(kUsage, "send: " + to.error());
-  const Result<Socket> socket = open_udp({});
+  const Result<system::UdpSocket> socket = system::open_udp({});
   if (!socket) return fail(kMachine, "send: " + socket.error());
   if (!send_message(socket->fd(), *to, message)) {
     return fail(

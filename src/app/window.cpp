@@ -1,8 +1,6 @@
 // GLFW, and Xlib's way of ending programs kept from it.
 #include "app/window.h"
 
-#include <dlfcn.h>
-
 #include <algorithm>
 #include <cstdint>
 #include <cstdlib>
@@ -11,6 +9,8 @@
 
 #include <GLFW/glfw3.h>
 #include <fmt/format.h>
+
+#include "base/system/process.h"
 
 namespace limber {
 
@@ -34,7 +34,7 @@ int handle_failed_request(void*, void*) {
 template <class Handler>
 void set_handler(const char* setter, Handler handler) {
   using Setter = Handler (*)(Handler);
-  if (const auto set = reinterpret_cast<Setter>(dlsym(RTLD_DEFAULT, setter))) set(handler);
+  if (const auto set = reinterpret_cast<Setter>(system::find_symbol(setter))) set(handler);
 }
 
 std::string glfw_fault() {

@@ -1,8 +1,6 @@
 // The loop of a window.
 #include "app/window_show.h"
 
-#include <sys/resource.h>
-
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -11,8 +9,9 @@
 
 #include "app/panel_setup.h"
 #include "app/paths.h"
-#include "base/clock_seconds.h"
 #include "base/log.h"
+#include "base/system/clock.h"
+#include "base/system/thread.h"
 #include "base/text.h"
 
 namespace limber {
@@ -37,7 +36,7 @@ std::vector<Arg> numbers(const Vec3& v) { return {Arg::of(v.x), Arg::of(v.y), Ar
 Result<std::unique_ptr<WindowShow>> WindowShow::open(const PictureOptions& options, const std::string& scene,
                                                      EngineLink& link) {
   // software drawing takes every core that it finds: it begins its threads from here
-  setpriority(PRIO_PROCESS, 0, 5);
+  system::lower_thread_priority();
   Result<PictureSize> size = picture_size(options);
   if (!size) return Error{size.error()};
   const PanelSettings settings = load_settings(settings_file());
@@ -189,7 +188,7 @@ void WindowShow::hear_mouse() {
   const MouseMoves mouse = window_->take_mouse();
   if (!mouse.any() || gui_->wants_mouse() || hand_.holds()) return;
   const CameraView camera = camera_of(*now_);
-  const double now = clock_seconds();
+  const double now = system::clock_seconds();
   if (now - moved_ > kHandStays) orbit_ = orbit_of(camera);
   moved_ = now;
   // of the part that the camera's picture fills
@@ -215,10 +214,10 @@ void WindowShow::tell_rate(double now) {
 WindowShow::End WindowShow::frame() {
   // a screen that waits for nothing would be drawn without end
   const double rate = window_->refresh_rate();
-  double now = clock_seconds();
+  double now = system::clock_seconds();
   const double rest = drawn_ + 0.95 / rate - now;
   window_->poll(rest > 0.001 ? rest : 0);
-  now = clock_seconds();
+  now = system::clock_seconds();
   if (window_->lost()) {
     log_error("the window is lost; playing on headless");
     return End::lost;

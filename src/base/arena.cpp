@@ -7,9 +7,8 @@
 #include <bit>
 #include <cstring>
 
-#include <sys/mman.h>
-
 #include "base/sanitized.h"
+#include "base/system/virtual_memory.h"
 
 #ifdef LIMBER_WATCHES_ADDRESSES
 #include <sanitizer/lsan_interface.h>
@@ -88,28 +87,27 @@ void show_to_leak_search([[maybe_unused]] void* begin, [[maybe_unused]] bool sho
 
 Arena::Arena() {
   static_assert(sizeof(Head) <= kHeadSize && sizeof(Chunk) == 32);
-  void* const got = mmap(nullptr, kReserve, PROT_NONE, MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);
-  if (got == MAP_FAILED) return;
-  auto* const begin = static_cast<std::byte*>(got);
+  std::byte* const begin = system::reserve_memory(kReserve);
+  if (begin == nullptr) return;
   constexpr std::size_t kTable = (kReserve / kChunk * sizeof(Chunk) + kHeadSize + kChunk - 1) / kChunk * kChunk;
-  if (mprotect(begin, kTable, PROT_READ | PROT_WRITE) != 0) {
-    munmap(got, kReserve);
+  if (!system::commit_memory(begin, kTable)) {
+    system::release_memory(begin, kReserve);
     return;
   }
-  show_to_leak_search(got, true);
+  show_to_leak_search(begin, true);
   head_ = new (begin) Head;
   head_->open.fill(kNone);
   chunks_ = reinterpret_cast<Chunk*>(begin + kHeadSize);
   data_ = begin + kTable;
   std::byte* const large = at_large_page(data_ + kLargePage);
   // a wish: without it all is the same
-  (void)madvise(large, static_cast<std::size_t>(begin + kReserve - large), MADV_HUGEPAGE);
+  system::prefer_large_pages(large, static_cast<std::size_t>(begin + kReserve - large));
 }
 
 Arena::~Arena() {
   if (head_ == nullptr) return;
   show_to_leak_search(static_cast<void*>(head_), false);
-  munmap(static_cast<void*>(head_), kReserve);
+  system::release_memory(reinterpret_cast<std::byte*>(head_), kReserve);
 }
 
 std::byte* Arena::data_of(std::uint32_t chunk) const { return data_ + std::size_t{chunk} * kChunk; }
@@ -157,8 +155,7 @@ std::uint32_t Arena::take_chunks(std::uint32_t count) {
     // up to the end of a large page: it is given whole or not at all
     const auto whole = static_cast<std::size_t>(at_large_page(data_of(end)) - data_);
     const auto ready = static_cast<std::uint32_t>(std::min(most, (whole + kChunk - 1) / kChunk));
-    if (mprotect(data_of(head.ready), std::size_t{ready - head.ready} * kChunk, PROT_READ | PROT_WRITE) != 0)
-      return kNone;
+    if (!system::commit_memory(data_of(head.ready), std::size_t{ready - head.ready} * kChunk)) return kNone;
     head.ready = ready;
   }
   for (std::uint32_t at = head.count; at < end; at++) new (&chunks_[at]) Chunk;

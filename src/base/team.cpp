@@ -1,10 +1,9 @@
 // Helpers watch for the next round for a moment, then sleep; within one, pieces are taken by counting down.
 #include "base/team.h"
 
-#include <pthread.h>
-
 #include "base/check.h"
-#include "base/clock_seconds.h"
+#include "base/system/clock.h"
+#include "base/system/thread.h"
 
 namespace limber {
 
@@ -29,7 +28,6 @@ Team::Team(int members)
   LIMBER_CHECK(members >= 1 && members <= kMost);
   for (int member = 1; member < members; member++) {
     helpers_.emplace_back([this, member] { help(member); });
-    pthread_setname_np(helpers_.back().native_handle(), "limber-team");
   }
 }
 
@@ -66,6 +64,7 @@ void Team::share(int pieces, Call call, void* of) {
 }
 
 void Team::help(int member) {
+  system::name_this_thread("limber-team");
   std::uint32_t seen = 0;
   while (!ends_) {
     watch([&] { return round_.load() != seen; });
@@ -79,13 +78,13 @@ void Team::help(int member) {
 template <class Done>
 void Team::watch(Done&& done) const {
   if (!watches_ || done()) return;
-  const double end = clock_seconds() + kWatch;
+  const double end = system::clock_seconds() + kWatch;
   do {
     for (int i = 0; i < 16; i++) {
       if (done()) return;
       pause_a_moment();
     }
-  } while (clock_seconds() < end);
+  } while (system::clock_seconds() < end);
 }
 
 // Its own part, then the others'.

@@ -1,13 +1,12 @@
 // Connecting, and lines out and in.
 #include "console/console_link.h"
 
-#include <poll.h>
-#include <sys/socket.h>
-
 #include <cerrno>
-#include <csignal>
 
 #include <fmt/format.h>
+
+#include "base/system/socket.h"
+#include "base/system/wait.h"
 
 namespace limber {
 
@@ -24,16 +23,15 @@ std::string list_text(const std::vector<RunningProgram>& programs) {
 
 // false: nothing came. Signals that are blocked otherwise come in here: none gets lost between two looks
 bool wait_for_some(int fd, int wait_ms) {
-  pollfd polled{fd, POLLIN, 0};
-  const timespec limit{wait_ms / 1000, wait_ms % 1000 * 1000000L};
-  sigset_t none;
-  sigemptyset(&none);
-  return ppoll(&polled, 1, wait_ms < 0 ? nullptr : &limit, &none) > 0;
+  system::Waiting waiting{.fd = fd};
+  std::optional<std::chrono::nanoseconds> limit;
+  if (wait_ms >= 0) limit = std::chrono::milliseconds(wait_ms);
+  return system::wait_ready_or_signal({&waiting, 1}, limit);
 }
 
 // connects and reads the first line
 Result<ConsoleLink> greet(const std::string& path, ConsoleLine& hello) {
-  Result<Descriptor> connection = connect_console(path);
+  Result<system::Descriptor> connection = connect_console(path);
   if (!connection) return Error{connection.error()};
   ConsoleLink link(std::move(*connection));
   const std::optional<ConsoleLine> first = link.next(kHelloMs);
@@ -49,12 +47,12 @@ Result<ConsoleLink> greet(const std::string& path, ConsoleLine& hello) {
 bool ConsoleLink::send(const ConsoleRequest& request) {
   const std::string line = request_line(request);
   for (std::size_t sent = 0; sent < line.size();) {
-    const ssize_t n = ::send(fd(), line.data() + sent, line.size() - sent, MSG_NOSIGNAL);
+    const std::ptrdiff_t n = system::send_bytes(fd(), std::string_view(line).substr(sent));
     if (n > 0) {
       sent += static_cast<std::size_t>(n);
     } else if (errno == EAGAIN) {
-      pollfd polled{fd(), POLLOUT, 0};
-      poll(&polled, 1, -1);
+      system::Waiting waiting{.fd = fd(), .read = false, .write = true};
+      (void)system::wait_ready({&waiting, 1}, std::nullopt);
     } else if (errno != EINTR) {
       return false;
     }
@@ -76,7 +74,7 @@ std::optional<ConsoleLine> ConsoleLink::take_line() {
 // false: nothing is there to read now
 bool ConsoleLink::read_some() {
   char bytes[16384];
-  const ssize_t got = recv(fd(), bytes, sizeof bytes, 0);
+  const std::ptrdiff_t got = system::receive_bytes(fd(), bytes, sizeof bytes);
   if (got > 0) {
     in_.append(bytes, static_cast<std::size_t>(got));
     return true;

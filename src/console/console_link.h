@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "base/descriptor.h"
 #include "base/result.h"
+#include "base/system/descriptor.h"
 #include "console/protocol.h"
 #include "console/runtime_folder.h"
 
@@ -14,7 +14,7 @@ namespace limber {
 
 class ConsoleLink {
  public:
-  explicit ConsoleLink(Descriptor connection) : connection_(std::move(connection)) {}
+  explicit ConsoleLink(system::Descriptor connection) : connection_(std::move(connection)) {}
 
   int fd() const { return connection_.fd(); }
   /// False when the other end has gone.
@@ -29,7 +29,7 @@ class ConsoleLink {
   bool read_some();
   std::optional<ConsoleLine> take_line();
 
-  Descriptor connection_;
+  system::Descriptor connection_;
   std::string in_;
   bool ended_ = false;
 };

@@ -5,8 +5,8 @@
 #include <string_view>
 #include <vector>
 
-#include "base/descriptor.h"
 #include "base/result.h"
+#include "base/system/descriptor.h"
 
 namespace limber {
 
@@ -31,13 +31,6 @@ std::string socket_path(std::string_view folder, int pid);
 std::vector<ConsoleSocket> console_sockets(const std::string& folder);
 
 /// A non-blocking connection to one of this user's programs. The error says why there is none. [any]
-Result<Descriptor> connect_console(const std::string& path);
-
-/// A non-blocking socket that listens at `path` and that only this user may open (0600). It appears there when it
-/// listens, so that nobody takes it for a dead one. [any]
-Result<Descriptor> listen_console(const std::string& path);
-
-/// The user at the other end of a connection; nothing when the kernel does not say. [any]
-long peer_user(const Descriptor& connection);
+Result<system::Descriptor> connect_console(const std::string& path);
 
 }  // namespace limber

@@ -1,11 +1,6 @@
 // One loop, one poll, as the network's.
 #include "console/server.h"
 
-#include <poll.h>
-#include <pthread.h>
-#include <sys/socket.h>
-#include <unistd.h>
-
 #include <cerrno>
 #include <utility>
 #include <vector>
@@ -14,13 +9,18 @@
 
 #include "base/build_info.h"
 #include "base/log.h"
+#include "base/system/file.h"
+#include "base/system/local_socket.h"
+#include "base/system/process.h"
+#include "base/system/thread.h"
+#include "base/system/wait.h"
 #include "console/runtime_folder.h"
 
 namespace limber {
 
 namespace {
 
-constexpr int kLookAtLog = 50;  // ms between two looks at the log while somebody listens
+constexpr auto kLookAtLog = std::chrono::milliseconds(50);  // between two looks at the log while a console listens
 
 }  // namespace
 
@@ -33,32 +33,32 @@ Result<void> ConsoleServer::start() {
   const Result<std::string> folder = options_.folder.empty() ? make_runtime_folder() : options_.folder;
   if (!folder) return Error{folder.error()};
   console_sockets(*folder);  // the look at them removes the dead ones
-  std::string path = socket_path(*folder, getpid());
-  Result<Descriptor> listener = listen_console(path);
+  std::string path = socket_path(*folder, system::process_id());
+  Result<system::Descriptor> listener = system::listen_local(path);
   if (!listener) return Error{listener.error()};
   listener_ = std::move(*listener);
   path_ = std::move(path);
   stop_ = false;
   thread_ = std::thread([this] { run(); });
-  pthread_setname_np(thread_.native_handle(), "limber-console");
   return {};
 }
 
 void ConsoleServer::stop() {
   if (!thread_.joinable()) return;
   stop_ = true;
-  mail_->wake.ring();
+  mail_->wake.notify();
   thread_.join();
-  unlink(path_.c_str());
+  system::remove_file(path_);
   path_.clear();
-  listener_ = Descriptor();
+  listener_ = system::Descriptor();
   visitors_.clear();
 }
 
 void ConsoleServer::run() {
+  system::name_this_thread("limber-console");
   while (!stop_.load()) {
     wait_for_something();
-    mail_->wake.answer();
+    mail_->wake.clear();
     let_in();
     hand_out_answers();
     for (auto& [number, visitor] : visitors_) {
@@ -76,26 +76,24 @@ void ConsoleServer::run() {
 }
 
 void ConsoleServer::wait_for_something() {
-  // a negative descriptor is passed over: one that waits for its answer must not wake us by hanging up
-  std::vector<pollfd> polled = {{mail_->wake.fd(), POLLIN, 0}, {rests_ ? -1 : listener_.fd(), POLLIN, 0}};
-  for (const auto& [number, visitor] : visitors_) {
-    const short events = visitor.events();
-    polled.push_back({events == 0 ? -1 : visitor.fd(), events, 0});
-  }
+  std::vector<system::Waiting> waiting = {{.fd = mail_->wake.fd()}, {.fd = rests_ ? -1 : listener_.fd()}};
+  for (const auto& [number, visitor] : visitors_) waiting.push_back(visitor.waits_for());
+  std::optional<std::chrono::nanoseconds> limit;
+  if (!visitors_.empty() || rests_) limit = kLookAtLog;
   // interrupted or not: the loop looks at everything anyway
-  poll(polled.data(), polled.size(), visitors_.empty() && !rests_ ? -1 : kLookAtLog);
+  (void)system::wait_ready(waiting, limit);
   rests_ = false;
 }
 
 void ConsoleServer::let_in() {
-  const long user = options_.user < 0 ? static_cast<long>(geteuid()) : options_.user;
+  const long user = options_.user < 0 ? system::user_id() : options_.user;
   for (std::size_t i = 0; i < 2 * kMostVisitors; i++) {
-    Descriptor connection(accept4(listener_.fd(), nullptr, nullptr, SOCK_NONBLOCK | SOCK_CLOEXEC));
+    system::Descriptor connection = system::accept_connection(listener_.fd());
     if (!connection.open()) {
       rests_ = errno != EAGAIN && errno != EINTR && errno != ECONNABORTED;
       return;
     }
-    if (peer_user(connection) != user) {
+    if (system::peer_user(connection) != user) {
       log_warning("console: a program of another user was turned away");
       continue;
     }
@@ -105,7 +103,7 @@ void ConsoleServer::let_in() {
       visitor.send();
       continue;
     }
-    visitor.say(hello_line(version(), getpid(), options_.scene));
+    visitor.say(hello_line(version(), system::process_id(), options_.scene));
     visitors_.emplace(++last_visitor_, std::move(visitor));
   }
 }
@@ -125,7 +123,7 @@ std::string ConsoleServer::ask(std::uint64_t visitor, const ConsoleRequest& requ
   wish->text = request.text;
   wish->answer = [mail = mail_, visitor, id = request.id](Evaluation said) {
     mail->answers.push({visitor, id, std::move(said)});
-    mail->wake.ring();
+    mail->wake.notify();
   };
   Command command;
   command.origin.hand = Hand::console;

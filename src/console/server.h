@@ -8,9 +8,9 @@
 #include <string>
 #include <thread>
 
-#include "base/descriptor.h"
 #include "base/result.h"
-#include "base/wake.h"
+#include "base/system/descriptor.h"
+#include "base/system/wake.h"
 #include "console/visitor.h"
 #include "engine/link.h"
 
@@ -48,7 +48,7 @@ class ConsoleServer {
       Evaluation said;
     };
     Inbox<Answer> answers{kMostVisitors};  // each waits for one at most
-    Wake wake;
+    system::Wake wake;
   };
 
   void run();
@@ -60,7 +60,7 @@ class ConsoleServer {
   EngineLink& link_;
   const ConsoleOptions options_;
   std::string path_;
-  Descriptor listener_;
+  system::Descriptor listener_;
   std::shared_ptr<Mail> mail_ = std::make_shared<Mail>();
   std::map<std::uint64_t, Visitor> visitors_;
   std::uint64_t last_visitor_ = 0;

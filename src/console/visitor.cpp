@@ -1,10 +1,9 @@
 // One connection's buffers.
 #include "console/visitor.h"
 
-#include <poll.h>
-#include <sys/socket.h>
-
 #include <cerrno>
+
+#include "base/system/socket.h"
 
 namespace limber {
 
@@ -15,7 +14,7 @@ constexpr std::size_t kSlice = 16384;             // bytes read at a time
 
 }  // namespace
 
-Visitor::Visitor(Descriptor connection, std::uint64_t seen) : connection_(std::move(connection)), seen_(seen) {}
+Visitor::Visitor(system::Descriptor connection, std::uint64_t seen) : connection_(std::move(connection)), seen_(seen) {}
 
 bool Visitor::waits_to_be_read() const { return out_.size() > kMostWaiting; }
 
@@ -30,12 +29,12 @@ void Visitor::leave() {
   in_.clear();
 }
 
-short Visitor::events() const {
-  if (gone_) return 0;
-  int events = out_.empty() ? 0 : POLLOUT;
+system::Waiting Visitor::waits_for() const {
+  if (gone_) return {};
   // one that is busy or does not read must wait; what it sends fills the kernel's buffer and then its own
-  if (!busy_ && !ends_ && !waits_to_be_read()) events |= POLLIN;
-  return static_cast<short>(events);
+  const bool read = !busy_ && !ends_ && !waits_to_be_read();
+  // one that waits for its answer is left out, so that it does not wake us by hanging up
+  return {.fd = read || !out_.empty() ? fd() : -1, .read = read, .write = !out_.empty()};
 }
 
 void Visitor::receive(const Ask& ask, const Watch& watch) {
@@ -47,7 +46,7 @@ void Visitor::receive(const Ask& ask, const Watch& watch) {
 
 void Visitor::read_some() {
   char bytes[kSlice];
-  const ssize_t got = recv(fd(), bytes, sizeof bytes, 0);
+  const std::ptrdiff_t got = system::receive_bytes(fd(), bytes, sizeof bytes);
   if (got > 0) {
     in_.append(bytes, static_cast<std::size_t>(got));
   } else if (got == 0) {
@@ -130,7 +129,7 @@ void Visitor::say_or_miss(std::string_view line) {
 
 void Visitor::send() {
   while (!out_.empty() && !gone_) {
-    const ssize_t sent = ::send(fd(), out_.data(), out_.size(), MSG_NOSIGNAL);
+    const std::ptrdiff_t sent = system::send_bytes(fd(), out_);
     if (sent > 0) {
       out_.erase(0, static_cast<std::size_t>(sent));
     } else if (sent == 0 || errno == EAGAIN) {

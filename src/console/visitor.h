@@ -5,7 +5,8 @@
 #include <functional>
 #include <string>
 
-#include "base/descriptor.h"
+#include "base/system/descriptor.h"
+#include "base/system/wait.h"
 #include "console/protocol.h"
 #include "console/watcher.h"
 
@@ -20,11 +21,11 @@ class Visitor {
   using Watch = std::function<Result<std::unique_ptr<Watcher>>(const ConsoleRequest&)>;
 
   /// Lines of the log after `seen` are told.
-  Visitor(Descriptor connection, std::uint64_t seen);
+  Visitor(system::Descriptor connection, std::uint64_t seen);
 
   int fd() const { return connection_.fd(); }
-  /// What to poll for.
-  short events() const;
+  /// The descriptor that the server waits for, and until when.
+  system::Waiting waits_for() const;
   /// Says a line as it is.
   void say(std::string_view line);
   /// Reads some of what has come, and asks for the next request unless one is under way.
@@ -50,7 +51,7 @@ class Visitor {
   void tell_lines(std::uint64_t up_to, std::uint64_t id);
   bool waits_to_be_read() const;
 
-  Descriptor connection_;
+  system::Descriptor connection_;
   std::string in_;
   std::string out_;
   std::uint64_t seen_;

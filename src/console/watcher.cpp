@@ -8,7 +8,7 @@
 #include <fmt/format.h>
 
 #include "base/address.h"
-#include "base/clock_seconds.h"
+#include "base/system/clock.h"
 #include "base/text.h"
 #include "params/row_text.h"
 
@@ -85,7 +85,7 @@ class ChangeWatcher : public Watcher {
   void hear(const std::shared_ptr<const Image>& image, const std::function<void(std::string)>& say) {
     const bool other = image_ == nullptr || image_->tree != image->tree;
     if (other) bind(*image->tree);
-    const double now = clock_seconds();
+    const double now = system::clock_seconds();
     const std::unordered_map<std::string, std::string> hands = hands_since(heard_);
     heard_ = now - kLate;
     for (std::size_t i = 0; image_ != nullptr && i < values_.size(); i++) {
@@ -139,7 +139,7 @@ class ChangeWatcher : public Watcher {
   EngineLink& link_;
   const std::string pattern_;
   std::uint64_t asked_ = 0;
-  double heard_ = clock_seconds();
+  double heard_ = system::clock_seconds();
   std::shared_ptr<const Image> image_;
   std::vector<Value> values_;
   std::vector<Value> old_;  // of the tree before, while another one is compared with it

@@ -11,7 +11,7 @@ namespace limber {
 
 struct ChangeLine {
   std::uint64_t number = 0;  ///< Counts from 1.
-  double time = 0;           ///< clock_seconds(), when it was set last.
+  double time = 0;           ///< system::clock_seconds(), when it was set last.
   std::string who;           ///< As sender_text() names a hand.
   std::string path;
   std::string from, to;       ///< As value_text() has them; of a hand that goes on, the first and the last.

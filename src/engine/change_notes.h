@@ -18,7 +18,7 @@ class ChangeNotes {
 
   explicit ChangeNotes(ChangeLog& log) : log_(log) {}
 
-  /// What is set from here on is set by this hand, at that time (clock_seconds()).
+  /// What is set from here on is set by this hand, at that time (system::clock_seconds()).
   void begin(const Origin& who, double time);
   /// The row was `before`, and is written. Allocates nothing.
   void heard(NodeId id, const Row& row, const double* before);

@@ -6,8 +6,8 @@
 
 #include <fmt/format.h>
 
-#include "base/clock_seconds.h"
 #include "base/log.h"
+#include "base/system/clock.h"
 #include "base/text.h"
 
 namespace limber {
@@ -24,12 +24,12 @@ constexpr int kHeardWork = 3;
 class Stopwatch {
  public:
   double lap() {
-    const double now = clock_seconds();
+    const double now = system::clock_seconds();
     return now - std::exchange(last_, now);
   }
 
  private:
-  double last_ = clock_seconds();
+  double last_ = system::clock_seconds();
 };
 
 }  // namespace

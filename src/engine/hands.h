@@ -2,7 +2,7 @@
 // with begin() can be undone, and stands in the log. [sim]
 #pragma once
 
-#include "base/clock_seconds.h"
+#include "base/system/clock.h"
 #include "engine/change_notes.h"
 #include "engine/edits.h"
 #include "engine/presets.h"
@@ -43,7 +43,7 @@ class Hands {
   Edits& edits_;
   ChangeNotes& notes_;
   Store::Listener before_;
-  const double now_ = clock_seconds();
+  const double now_ = system::clock_seconds();
   bool begun_ = false;
 };
 

@@ -6,8 +6,8 @@
 #include <memory>
 #include <vector>
 
-#include "base/clock_seconds.h"
 #include "base/latest.h"
+#include "base/system/clock.h"
 #include "engine/image.h"
 #include "params/catalog.h"
 
@@ -21,7 +21,8 @@ class ImageMaker {
 
   /// `now` reads a clock in seconds, `spent` one of what the thread has had of a processor: a program that was
   /// suspended for an hour while it made an image owes nothing.
-  explicit ImageMaker(Latest<Image>& out, double (*now)() = &clock_seconds, double (*spent)() = &thread_seconds)
+  explicit ImageMaker(Latest<Image>& out, double (*now)() = &system::clock_seconds,
+                      double (*spent)() = &system::thread_seconds)
       : out_(out), now_(now), spent_(spent) {}
 
   /// The row was set by this hand, just now. Beyond kMostNotes the oldest are forgotten.

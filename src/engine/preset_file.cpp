@@ -1,10 +1,6 @@
 // Reading whole, writing beside, renaming.
 #include "engine/preset_file.h"
 
-#include <signal.h>
-#include <sys/stat.h>
-#include <unistd.h>
-
 #include <cerrno>
 #include <cstring>
 #include <filesystem>
@@ -14,8 +10,9 @@
 
 #include <fmt/format.h>
 
+#include "base/system/file.h"
+#include "base/system/process.h"
 #include "base/text.h"
-#include "base/whole_file.h"
 
 namespace limber {
 
@@ -30,7 +27,7 @@ Error file_error(const std::string& path, std::string_view what) {
 }
 
 // what is written until it has the file's name: of this program, so that two don't share one
-std::string fresh_name(const std::string& path) { return fmt::format("{}.{}.new", path, getpid()); }
+std::string fresh_name(const std::string& path) { return fmt::format("{}.{}.new", path, system::process_id()); }
 
 // what programs that were killed in the middle of a save have left
 void clear_leftovers(const std::string& path) {
@@ -41,7 +38,7 @@ void clear_leftovers(const std::string& path) {
     const std::string name = entry.path().filename().string();
     if (!name.starts_with(begin) || !name.ends_with(".new") || name.size() < begin.size() + 5) continue;
     const auto pid = parse_number(std::string_view(name).substr(begin.size(), name.size() - begin.size() - 4));
-    if (!pid || *pid < 1 || *pid > 4194304 || kill(static_cast<pid_t>(*pid), 0) == 0 || errno != ESRCH) continue;
+    if (!pid || *pid < 1 || *pid > 4194304 || system::process_runs(static_cast<int>(*pid))) continue;
     fs::remove(entry.path(), gone);
   }
 }
@@ -89,8 +86,8 @@ Result<void> PresetFile::set_aside(std::string& said) const {
   const std::string path = target_of(path_);
   for (int n = 1; n < 10000; n++) {
     const std::string aside = fmt::format("{}.old{}", path, n == 1 ? "" : fmt::format("-{}", n));
-    if (link(path.c_str(), aside.c_str()) == 0 ||
-        (errno == EPERM && !fs::exists(aside) && rename(path.c_str(), aside.c_str()) == 0)) {
+    if (system::link_file(path, aside) ||
+        (errno == EPERM && !fs::exists(aside) && std::rename(path.c_str(), aside.c_str()) == 0)) {
       said = fmt::format("{}: what stood there is kept as {}", printable(path_),
                          printable(fs::path(aside).filename().string()));
       return {};
@@ -103,20 +100,19 @@ Result<void> PresetFile::set_aside(std::string& said) const {
 Result<void> PresetFile::save(const PresetList& presets, std::string& said) {
   const std::string path = target_of(path_);
   const std::string fresh = fresh_name(path);
-  struct stat now {};
-  const bool there = stat(path.c_str(), &now) == 0;
+  const std::optional<system::FileStatus> now = system::file_status(path);
   const std::string text = text_of(presets);
   const auto failed = [&](const std::string& why) {
-    unlink(fresh.c_str());
+    system::remove_file(fresh);
     return Error{fmt::format("the presets could not be saved: {}", why)};
   };
-  if (const Result<void> written = write_whole(fresh, text, there ? now.st_mode & 07777u : 0644u); !written)
+  if (const Result<void> written = system::write_whole(fresh, text, now ? now->permissions : 0644u); !written)
     return failed(written.error());
-  if (there && (unread_ || !known_.holds(path))) {
+  if (now && (unread_ || !known_.holds(path))) {
     if (const Result<void> aside = set_aside(said); !aside) return failed(aside.error());
   }
-  if (rename(fresh.c_str(), path.c_str()) != 0) return failed(reason());
-  sync_folder(path);
+  if (std::rename(fresh.c_str(), path.c_str()) != 0) return failed(reason());
+  system::sync_folder(path);
   known_ = FileStamp(path);
   unread_ = false;
   return {};

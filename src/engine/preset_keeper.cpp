@@ -1,11 +1,10 @@
 // The lock is held to take what is wanted, never while it is written.
 #include "engine/preset_keeper.h"
 
-#include <pthread.h>
-
 #include <utility>
 
 #include "base/log.h"
+#include "base/system/thread.h"
 #include "base/text.h"
 
 namespace limber {
@@ -35,7 +34,7 @@ void PresetKeeper::finish() {
 }
 
 void PresetKeeper::run() {
-  pthread_setname_np(pthread_self(), "limber-presets");
+  system::name_this_thread("limber-presets");
   std::unique_lock lock(mutex_);
   while (true) {
     changed_.wait(lock, [this] { return wanted_ != nullptr || end_; });

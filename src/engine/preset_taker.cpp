@@ -1,14 +1,13 @@
 // Plans are kept; along one for a preset.
 #include "engine/preset_taker.h"
 
-#include <pthread.h>
-#include <sys/mman.h>
-
 #include <algorithm>
 #include <chrono>
 #include <system_error>
 #include <utility>
 
+#include "base/system/thread.h"
+#include "base/system/virtual_memory.h"
 #include "params/catalog.h"
 
 namespace limber {
@@ -25,9 +24,9 @@ void ask_for_large_pages(const std::vector<double>& room) {
   constexpr std::size_t kLarge = std::size_t{4} << 20u;
   const std::size_t bytes = room.capacity() * sizeof(double);
   if (bytes < kLarge) return;
-  auto* const first = const_cast<char*>(reinterpret_cast<const char*>(room.data()));
+  auto* const first = const_cast<std::byte*>(reinterpret_cast<const std::byte*>(room.data()));
   const std::size_t skipped = (kPage - reinterpret_cast<std::uintptr_t>(first) % kPage) % kPage;
-  (void)madvise(first + skipped, bytes - kPage, MADV_HUGEPAGE);
+  system::prefer_large_pages(first + skipped, bytes - kPage);
 }
 
 }  // namespace
@@ -65,7 +64,7 @@ void PresetTaker::make_room(const Store& store) {
   if (room_.size() >= numbers) return;
   try {
     making_room_ = std::async(std::launch::async, [count = numbers + numbers / 8] {
-      pthread_setname_np(pthread_self(), "limber-room");
+      system::name_this_thread("limber-room");
       std::vector<double> room;
       room.reserve(count);
       ask_for_large_pages(room);

@@ -1,11 +1,6 @@
 // A place is held by a lock on a file beside; a first line says what the values are of, presets' text follows.
 #include "engine/recovery_file.h"
 
-#include <fcntl.h>
-#include <sys/file.h>
-#include <sys/stat.h>
-#include <unistd.h>
-
 #include <cerrno>
 #include <cstring>
 #include <filesystem>
@@ -20,8 +15,8 @@
 #include <nlohmann/json.hpp>
 
 #include "base/hash.h"
+#include "base/system/file.h"
 #include "base/text.h"
-#include "base/whole_file.h"
 #include "engine/preset_text.h"
 
 namespace limber {
@@ -35,22 +30,6 @@ constexpr const char* kHead = "limber recovery";
 constexpr int kVersion = 1;
 
 std::string reason() { return std::generic_category().message(errno); }
-
-// a lock that nobody else has, on a file that still has this name; none: somebody has it
-Result<Descriptor> lock_file(const std::string& path) {
-  while (true) {
-    Descriptor file(open(path.c_str(), O_RDWR | O_CREAT | O_CLOEXEC | O_NOFOLLOW, 0600));
-    if (!file.open()) return Error{fmt::format("{}: {}", printable(path), reason())};
-    if (flock(file.fd(), LOCK_EX | LOCK_NB) != 0) {
-      if (errno == EWOULDBLOCK) return Descriptor();
-      return Error{fmt::format("{}: {}", printable(path), reason())};
-    }
-    struct stat held {};
-    struct stat named {};
-    // who has ended just now has taken the name away
-    if (fstat(file.fd(), &held) == 0 && stat(path.c_str(), &named) == 0 && held.st_ino == named.st_ino) return file;
-  }
-}
 
 bool same_values(const double* a, const double* b, std::uint32_t count) {
   return std::memcmp(a, b, count * sizeof *a) == 0;
@@ -137,7 +116,7 @@ Result<std::unique_ptr<RecoveryFile>> RecoveryFile::open(const std::string& fold
       fmt::format("{}/{}-{:016x}", folder, fs::path(file->scene_).stem().string(), hash_bytes(file->scene_));
   for (int n = 1; n <= kMostPlaces; n++) {
     file->base_ = n == 1 ? name : fmt::format("{}-{}", name, n);
-    Result<Descriptor> lock = lock_file(file->locked_file());
+    Result<system::Descriptor> lock = system::lock_file(file->locked_file());
     if (!lock) return Error{lock.error()};
     if (!lock->open()) continue;
     file->lock_ = std::move(*lock);
@@ -170,28 +149,28 @@ Result<std::optional<LostValues>> RecoveryFile::lost() const {
 
 Result<void> RecoveryFile::save(const std::shared_ptr<const Preset>& values, std::time_t now) {
   if (values == nullptr) {
-    unlink(saved_file().c_str());
+    system::remove_file(saved_file());
     return {};
   }
   const nlohmann::ordered_json head = {{kHead, kVersion}, {"scene", scene_}, {"saved", now}};
   using Json = nlohmann::ordered_json;
   const std::string text =
       head.dump(-1, ' ', false, Json::error_handler_t::replace) + "\n" + text_of(PresetList{values});
-  Result<void> written = write_whole(fresh_file(), text, 0600);
+  Result<void> written = system::write_whole(fresh_file(), text, 0600);
   if (written && std::rename(fresh_file().c_str(), saved_file().c_str()) != 0) written = Error{reason()};
   if (!written) {
-    unlink(fresh_file().c_str());
+    system::remove_file(fresh_file());
     return Error{fmt::format("{}: {}", printable(saved_file()), written.error())};
   }
-  sync_folder(saved_file());
+  system::sync_folder(saved_file());
   return {};
 }
 
 void RecoveryFile::end(bool lost_too) {
-  unlink(saved_file().c_str());
-  unlink(fresh_file().c_str());
-  if (lost_too) unlink(lost_file().c_str());
-  unlink(locked_file().c_str());
+  system::remove_file(saved_file());
+  system::remove_file(fresh_file());
+  if (lost_too) system::remove_file(lost_file());
+  system::remove_file(locked_file());
   lock_ = {};
 }
 

@@ -7,8 +7,8 @@
 #include <optional>
 #include <string>
 
-#include "base/descriptor.h"
 #include "base/result.h"
+#include "base/system/descriptor.h"
 #include "engine/preset.h"
 
 namespace limber {
@@ -55,7 +55,7 @@ class RecoveryFile {
 
   std::string scene_;
   std::string base_;  // what all its names begin with
-  Descriptor lock_;
+  system::Descriptor lock_;
 };
 
 }  // namespace limber

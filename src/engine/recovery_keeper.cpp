@@ -1,13 +1,12 @@
 // The lock is held to take what was given, never while it is written.
 #include "engine/recovery_keeper.h"
 
-#include <pthread.h>
-
 #include <algorithm>
 #include <ctime>
 #include <utility>
 
 #include "base/log.h"
+#include "base/system/thread.h"
 #include "base/text.h"
 
 namespace limber {
@@ -70,7 +69,7 @@ void RecoveryKeeper::end() {
 }
 
 void RecoveryKeeper::run() {
-  pthread_setname_np(pthread_self(), "limber-recover");
+  system::name_this_thread("limber-recover");
   using Clock = std::chrono::steady_clock;
   Clock::time_point next = Clock::now() + every_;
   int asked = 0;

@@ -1,10 +1,6 @@
 // The lock is held to take what has come, never while it is written.
 #include "engine/take_writer.h"
 
-#include <fcntl.h>
-#include <pthread.h>
-#include <unistd.h>
-
 #include <cerrno>
 #include <chrono>
 #include <cstring>
@@ -16,6 +12,8 @@
 #include <fmt/format.h>
 
 #include "base/hash.h"
+#include "base/system/file.h"
+#include "base/system/thread.h"
 #include "base/text.h"
 #include "engine/preset_text.h"
 #include "engine/take_text.h"
@@ -113,8 +111,8 @@ Result<void> TakeWriter::open_file() {
   const std::string first = place_.path;
   for (int n = 1; n < 10000; n++) {
     const std::string path = numbered(first, n);
-    file_ = ::open(path.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0644);
-    if (file_ >= 0) {
+    file_ = system::open_file(path, system::OpenMode::create_new);
+    if (file_.open()) {
       const std::scoped_lock lock(mutex_);
       place_.path = path;
       return {};
@@ -128,12 +126,8 @@ Result<void> TakeWriter::open_file() {
 }
 
 void TakeWriter::put(std::string_view bytes) {
-  while (!bytes.empty() && !failed()) {
-    const ssize_t written = ::write(file_, bytes.data(), bytes.size());
-    if (written < 0 && errno == EINTR) continue;
-    if (written <= 0) return fail(fmt::format("the take ends here, the disk takes no more: {}", disk_reason()));
-    bytes.remove_prefix(static_cast<std::size_t>(written));
-  }
+  if (failed() || system::write_all(file_.fd(), bytes)) return;
+  fail(fmt::format("the take ends here, the disk takes no more: {}", disk_reason()));
 }
 
 // the number of a content; it is written where it is new
@@ -185,7 +179,7 @@ void TakeWriter::write_all(std::string_view bytes, std::vector<Job>& jobs) {
 }
 
 void TakeWriter::run() {
-  pthread_setname_np(pthread_self(), "limber-take");
+  system::name_this_thread("limber-take");
   const Result<void> open = open_file();
   if (open) put(head_text(header_));
   if (!open) failed_.store(true);
@@ -216,9 +210,9 @@ void TakeWriter::run() {
     write_all(bytes, jobs);
     if (full) fail("the take ends here: the disk is too slow for it");
   }
-  if (abandoned_) unlink(place_.path.c_str());
-  (void)fdatasync(file_);
-  ::close(file_);
+  if (abandoned_) system::remove_file(place_.path);
+  (void)system::sync_data(file_.fd());
+  file_ = {};
   done_.store(true);
 }
 

@@ -15,6 +15,7 @@
 #include <vector>
 
 #include "base/result.h"
+#include "base/system/descriptor.h"
 #include "engine/take.h"
 
 namespace limber {
@@ -69,7 +70,7 @@ class TakeWriter {
   std::atomic<bool> failed_{false};
   std::atomic<bool> done_{false};
   // of the thread
-  int file_ = -1;
+  system::Descriptor file_;
   std::map<std::uint64_t, std::uint32_t> contents_;  // numbers by hash
   std::string frame_;
 

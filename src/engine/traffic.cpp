@@ -6,7 +6,7 @@
 
 #include <fmt/format.h>
 
-#include "base/clock_seconds.h"
+#include "base/system/clock.h"
 #include "base/text.h"
 
 namespace limber {
@@ -25,7 +25,7 @@ std::size_t weight_of(const TrafficLine& line) {
 }  // namespace
 
 void Traffic::note(bool in, std::string end, const Message& message) {
-  TrafficLine line{0, clock_seconds(), in, std::move(end), message};
+  TrafficLine line{0, system::clock_seconds(), in, std::move(end), message};
   const std::size_t bytes = weight_of(line);
   const std::scoped_lock lock(mutex_);
   line.number = ++newest_;

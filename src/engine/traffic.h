@@ -15,7 +15,7 @@ namespace limber {
 
 struct TrafficLine {
   std::uint64_t number = 0;  ///< Counts from 1; some may have been forgotten in between.
-  double time = 0;           ///< clock_seconds().
+  double time = 0;           ///< system::clock_seconds().
   bool in = false;
   std::string end;  ///< Who sent it, or whom it went to.
   Message message;

@@ -1,9 +1,6 @@
 // A joint of the file is a link of the body: at rest it is not turned, so what it has turned is against the rest pose.
 #include "motion/bvh.h"
 
-#include <sys/stat.h>
-#include <unistd.h>
-
 #include <algorithm>
 #include <array>
 #include <cerrno>
@@ -14,6 +11,7 @@
 
 #include <fmt/format.h>
 
+#include "base/system/file.h"
 #include "base/text.h"
 #include "motion/names.h"
 #include "motion/out_file.h"
@@ -179,7 +177,7 @@ class BvhWriter : public MotionWriter {
   }
 
   Result<void> begin() {
-    if (single_ || ::mkdir(folder_.c_str(), 0777) == 0) return {};
+    if (single_ || system::make_folder(folder_, 0777)) return {};
     return failed();
   }
 

@@ -1,9 +1,6 @@
 // Rows have the columns that are known when they are written; those that came later are added at the end.
 #include "motion/csv.h"
 
-#include <fcntl.h>
-#include <unistd.h>
-
 #include <cerrno>
 #include <optional>
 #include <system_error>
@@ -11,7 +8,7 @@
 
 #include <fmt/format.h>
 
-#include "base/descriptor.h"
+#include "base/system/file.h"
 #include "base/text.h"
 #include "motion/names.h"
 #include "motion/out_file.h"
@@ -104,7 +101,7 @@ class CsvWriter : public MotionWriter {
   // the rows again, under the whole header, each with an empty cell for every column that it did not know
   Result<void> widen() {
     OutFile whole(path_, beside_name(path_ + ".whole"));
-    const Descriptor in(::open(rows_->beside().c_str(), O_RDONLY | O_CLOEXEC));
+    const system::Descriptor in = system::open_file(rows_->beside(), system::OpenMode::read);
     if (!in.open()) return read_fault();
     if (Result<void> opened = whole.open(); !opened) return opened;
     if (Result<void> put = whole.put(header_ + "\n"); !put) return put;
@@ -112,8 +109,7 @@ class CsvWriter : public MotionWriter {
     std::string out;
     std::uint64_t line = 0;  // 0: the first header, which was too short
     std::size_t era = 0;
-    for (ssize_t n = 0; (n = ::read(in.fd(), piece.data(), piece.size())) != 0;) {
-      if (n < 0 && errno == EINTR) continue;
+    for (std::ptrdiff_t n = 0; (n = system::read_some(in.fd(), piece.data(), piece.size())) != 0;) {
       if (n < 0) return read_fault();
       out.clear();
       for (const char c : std::string_view(piece).substr(0, static_cast<std::size_t>(n))) {

@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "osc/socket.h"
+#include "osc/endpoint.h"
 
 namespace limber {
 

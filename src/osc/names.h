@@ -8,7 +8,7 @@
 #include <string>
 
 #include "base/result.h"
-#include "osc/socket.h"
+#include "osc/endpoint.h"
 
 namespace limber {
 

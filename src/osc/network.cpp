@@ -1,17 +1,14 @@
 // One loop, one poll: everything that OSC does happens between two waits.
 #include "osc/network.h"
 
-#include <poll.h>
-#include <pthread.h>
-
 #include <algorithm>
-#include <cerrno>
-#include <ctime>
 #include <utility>
 
 #include <fmt/format.h>
 
 #include "base/log.h"
+#include "base/system/thread.h"
+#include "base/system/wait.h"
 #include "base/text.h"
 
 namespace limber {
@@ -26,7 +23,7 @@ Network::Network(EngineLink& link, OscOptions options, const LiveOffsets& offset
     : link_(link),
       options_(std::move(options)),
       clock_(std::move(clock)),
-      wake_(std::make_shared<Wake>()),
+      wake_(std::make_shared<system::Wake>()),
       receiver_(
           link, options_.allow,
           {[this](const Outgoing& out) { out.origin.hand == Hand::query ? link_.push_out(out) : sender_.send(out); },
@@ -36,10 +33,10 @@ Network::Network(EngineLink& link, OscOptions options, const LiveOffsets& offset
           clock_),
       sender_(
           link.counters, link.traffic, [this](const Endpoint& sender) { return receiver_.socket_of(sender); }, clock_),
-      names_(std::move(look_up), [wake = wake_] { wake->ring(); }),
+      names_(std::move(look_up), [wake = wake_] { wake->notify(); }),
       streams_(link, offsets, clock_),
       subscribers_(link, clock_, [this](const Outgoing& out) { sender_.send(out); }) {
-  link_.wake_network = [wake = wake_] { wake->ring(); };
+  link_.wake_network = [wake = wake_] { wake->notify(); };
 }
 
 Network::~Network() { stop(); }
@@ -57,18 +54,17 @@ Result<void> Network::start() {
   for (const std::string& fault : faults) log_warning("{}", fault);
   stop_ = false;
   thread_ = std::thread([this] { run(); });
-  pthread_setname_np(thread_.native_handle(), "limber-network");
   return {};
 }
 
 void Network::stop() {
   if (thread_.joinable()) {
     stop_ = true;
-    wake_->ring();
+    wake_->notify();
     thread_.join();
   }
   // what the engine said before it stopped still goes out
-  if (sender_.fd() >= 0) send_outbox();
+  if (sender_.socket().is_open()) send_outbox();
   receiver_.close();
   sender_.close();
   plan_ = {};
@@ -89,9 +85,10 @@ std::vector<Endpoint> Network::bound() const {
 }
 
 void Network::run() {
+  system::name_this_thread("limber-network");
   while (!stop_.load()) {
     wait_for_something();
-    wake_->answer();
+    wake_->clear();
     for (const int fd : descriptors_) receiver_.receive(fd);
     take_packets();
     receiver_.release_due();
@@ -100,25 +97,25 @@ void Network::run() {
     subscribers_.work();
     aim_at_subscribers();
     send_outbox();
-    streams_.send_due(sender_.fd());
-    refusals_.take(sender_.fd(), link_.counters, clock_.steady());
+    streams_.send_due(sender_.socket());
+    refusals_.take(sender_.socket(), link_.counters, clock_.steady());
   }
 }
 
 void Network::wait_for_something() {
-  std::vector<pollfd> polled;
-  polled.push_back({wake_->fd(), POLLIN, 0});
-  for (const int fd : descriptors_) polled.push_back({fd, POLLIN, 0});
+  std::vector<system::Waiting> waiting;
+  waiting.push_back({.fd = wake_->fd()});
+  for (const int fd : descriptors_) waiting.push_back({.fd = fd});
   std::optional<std::int64_t> wait = streams_.wait();
   std::optional<std::int64_t> listen;
   if (listen_at_) listen = std::max<std::int64_t>(0, *listen_at_ - clock_.steady());
   for (const auto other : {receiver_.wait(), subscribers_.wait(), listen}) {
     if (other && (!wait || *other < *wait)) wait = other;
   }
-  timespec limit{};
-  if (wait) limit = {*wait / 1'000'000'000, *wait % 1'000'000'000};
+  std::optional<std::chrono::nanoseconds> limit;
+  if (wait) limit = std::chrono::nanoseconds(*wait);
   // interrupted or not: the loop looks at everything anyway
-  ppoll(polled.data(), polled.size(), wait ? &limit : nullptr, nullptr);
+  (void)system::wait_ready(waiting, limit);
 }
 
 // opens and closes what differs from the plan before; the texts of what went wrong
@@ -207,7 +204,7 @@ void Network::aim_at_subscribers() {
 
 bool Network::take(const Origin& origin, std::string packet) {
   if (!packets_.push({origin, std::move(packet)})) return false;
-  wake_->ring();
+  wake_->notify();
   return true;
 }
 

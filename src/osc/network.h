@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "base/result.h"
-#include "base/wake.h"
+#include "base/system/wake.h"
 #include "engine/link.h"
 #include "osc/clock.h"
 #include "osc/names.h"
@@ -70,7 +70,7 @@ class Network {
   EngineLink& link_;
   const OscOptions options_;
   const NetClock clock_;
-  std::shared_ptr<Wake> wake_;
+  std::shared_ptr<system::Wake> wake_;
   Receiver receiver_;
   Sender sender_;
   HostNames names_;

@@ -7,7 +7,7 @@
 #include <fmt/format.h>
 
 #include "base/text.h"
-#include "osc/socket.h"
+#include "osc/endpoint.h"
 
 namespace limber {
 

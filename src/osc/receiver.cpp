@@ -1,12 +1,7 @@
-// recvmmsg in rounds of sixteen; nothing here throws, and nothing is logged per datagram.
+// Datagrams in rounds of sixteen; nothing here throws, and nothing is logged per datagram.
 #include "osc/receiver.h"
 
-#include <netinet/in.h>
-#include <sys/socket.h>
-
 #include <algorithm>
-#include <cerrno>
-#include <cstring>
 #include <utility>
 
 #include <fmt/format.h>
@@ -21,9 +16,7 @@ namespace limber {
 
 namespace {
 
-constexpr std::size_t kBatch = 16;
 constexpr int kRounds = 64;
-constexpr std::size_t kDatagram = 65536;  // more than UDP can carry, so nothing is cut
 constexpr int kReceiveBuffer = 4 << 20;
 constexpr const char* kCure = "choose another with --osc-in ADDR:PORT, or play without with --osc-optional";
 
@@ -39,43 +32,12 @@ void Receiver::warn_seldom(Seldom& kind, const Text& text) {
 
 struct Receiver::Listening {
   ListenAddress wish;
-  Socket socket;
+  system::UdpSocket socket;
   std::uint32_t kernel_drops = 0;  // the kernel counts from the socket's birth
 };
 
-struct Receiver::Buffers {
-  std::vector<char> bytes = std::vector<char>(kBatch * kDatagram);
-  std::array<iovec, kBatch> pieces{};
-  std::array<sockaddr_in, kBatch> from{};
-  std::array<mmsghdr, kBatch> headers{};
-  struct alignas(cmsghdr) Control {
-    std::array<char, 64> bytes;
-  };
-  std::array<Control, kBatch> control{};
-
-  // the kernel writes into lengths, so they are set anew before each round
-  void prepare() {
-    for (std::size_t i = 0; i < kBatch; i++) {
-      pieces[i] = {bytes.data() + i * kDatagram, kDatagram};
-      msghdr& h = headers[i].msg_hdr;
-      h = {};
-      h.msg_name = &from[i];
-      h.msg_namelen = sizeof from[i];
-      h.msg_iov = &pieces[i];
-      h.msg_iovlen = 1;
-      h.msg_control = control[i].bytes.data();
-      h.msg_controllen = control[i].bytes.size();
-    }
-  }
-};
-
 Receiver::Receiver(EngineLink& link, std::vector<Cidr> allow, ReceiverAnswers answers, const NetClock& clock)
-    : link_(link),
-      allow_(std::move(allow)),
-      answers_(std::move(answers)),
-      clock_(clock),
-      held_(clock),
-      buffers_(std::make_unique<Buffers>()) {}
+    : link_(link), allow_(std::move(allow)), answers_(std::move(answers)), clock_(clock), held_(clock) {}
 
 Receiver::~Receiver() = default;
 
@@ -103,22 +65,17 @@ std::optional<std::string> Receiver::open(const ListenAddress& address) {
   const std::string name = fmt::format("{}:{}", printable(address.address), address.port);
   const Result<Endpoint> at = resolve(address.address, address.port);
   if (!at) return fmt::format("OSC can't listen on {}: {}; {}", name, at.error(), kCure);
-  Result<Socket> socket = open_udp(*at);
+  Result<system::UdpSocket> socket = system::open_udp(*at);
   if (!socket) return fmt::format("OSC can't listen on {}: {}; {}", name, socket.error(), kCure);
 
-  const int on = 1;
-  setsockopt(socket->fd(), SOL_SOCKET, SO_RXQ_OVFL, &on, sizeof on);
-  setsockopt(socket->fd(), SOL_SOCKET, SO_RCVBUF, &kReceiveBuffer, sizeof kReceiveBuffer);
-  int granted = 0;
-  socklen_t length = sizeof granted;
-  getsockopt(socket->fd(), SOL_SOCKET, SO_RCVBUF, &granted, &length);
-  // the kernel doubles what it grants, for its own bookkeeping
-  if (granted / 2 < kReceiveBuffer && !said_buffer_) {
+  system::count_dropped(socket->fd());
+  const int granted = system::set_receive_buffer(socket->fd(), kReceiveBuffer);
+  if (granted < kReceiveBuffer && !said_buffer_) {
     said_buffer_ = true;
     log_info(
         "OSC in: the system grants a receive buffer of {} KiB instead of {}; bursts of many messages may lose "
         "some; cure: sysctl -w net.core.rmem_max={}",
-        granted / 2048, kReceiveBuffer / 1024, kReceiveBuffer);
+        granted / 1024, kReceiveBuffer / 1024, kReceiveBuffer);
   }
   if (at->ip == 0) {
     log_warning("OSC in {}: open to the network{}", name,
@@ -145,22 +102,13 @@ void Receiver::receive(int fd) {
   if (found == sockets_.end()) return;
   Listening& socket = **found;
   for (int round = 0; round < kRounds; round++) {
-    buffers_->prepare();
-    const int count = recvmmsg(fd, buffers_->headers.data(), kBatch, MSG_DONTWAIT, nullptr);
-    // an error (nothing there, a signal) is the same as an empty round: poll says when there is more
-    if (count <= 0) break;
-    for (std::size_t i = 0; i < static_cast<std::size_t>(count); i++) {
-      msghdr& header = buffers_->headers[i].msg_hdr;
-      for (cmsghdr* c = CMSG_FIRSTHDR(&header); c != nullptr; c = CMSG_NXTHDR(&header, c)) {
-        if (c->cmsg_level != SOL_SOCKET || c->cmsg_type != SO_RXQ_OVFL) continue;
-        std::uint32_t drops = 0;
-        std::memcpy(&drops, CMSG_DATA(c), sizeof drops);
-        note_kernel_drops(socket, drops);
-      }
-      const auto* data = static_cast<const char*>(buffers_->pieces[i].iov_base);
-      take_from(socket, data, buffers_->headers[i].msg_len, endpoint_of(buffers_->from[i]));
+    const std::span<const system::Datagram> datagrams = reader_.read(fd);
+    for (const system::Datagram& datagram : datagrams) {
+      if (datagram.dropped) note_kernel_drops(socket, *datagram.dropped);
+      take_from(socket, datagram.data, datagram.size, datagram.from);
     }
-    if (static_cast<std::size_t>(count) < kBatch) break;
+    // an error (nothing there, a signal) is the same as an empty round: the wait says when there is more
+    if (datagrams.size() < system::DatagramReader::kMost) break;
   }
 }
 

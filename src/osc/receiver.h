@@ -11,13 +11,14 @@
 #include <vector>
 
 #include "base/result.h"
+#include "base/system/udp_socket.h"
 #include "engine/link.h"
 #include "osc/clock.h"
 #include "osc/decode.h"
+#include "osc/endpoint.h"
 #include "osc/held.h"
 #include "osc/options.h"
 #include "osc/seldom.h"
-#include "osc/socket.h"
 
 namespace limber {
 
@@ -66,7 +67,6 @@ class Receiver {
 
  private:
   struct Listening;
-  struct Buffers;
   struct Known {
     Endpoint sender;
     int fd = -1;
@@ -90,7 +90,7 @@ class Receiver {
   const NetClock& clock_;
   HeldCommands held_;
   std::vector<std::unique_ptr<Listening>> sockets_;
-  std::unique_ptr<Buffers> buffers_;
+  system::DatagramReader reader_;
   std::array<Known, kKnown> known_{};
   bool pushed_ = false;  // since the engine was woken
   bool said_buffer_ = false;

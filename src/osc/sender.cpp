@@ -1,19 +1,14 @@
 // Every send is non-blocking: what the system does not take at once is lost, counted, and said seldom.
 #include "osc/sender.h"
 
-#include <netinet/in.h>
-#include <sys/socket.h>
-
 #include <algorithm>
 #include <array>
-#include <cerrno>
 #include <string_view>
 #include <system_error>
 #include <utility>
 
 #include "base/log.h"
 #include "base/text.h"
-#include "osc/refusals.h"
 #include "osc/tap.h"
 
 namespace limber {
@@ -46,14 +41,8 @@ Sender::Sender(Counters& counters, Traffic& traffic, std::function<int(const End
     : counters_(counters), traffic_(traffic), reply_socket_(std::move(reply_socket)), clock_(clock) {}
 
 Result<void> Sender::open() {
-  Result<Socket> socket = open_udp({});
-  if (!socket) return Error{"OSC can't open a socket to send from: " + socket.error()};
-  setsockopt(socket->fd(), SOL_SOCKET, SO_SNDBUF, &kSendBuffer, sizeof kSendBuffer);
-  setsockopt(socket->fd(), SOL_SOCKET, SO_RCVBUF, &kUnreadBuffer, sizeof kUnreadBuffer);
-  const int on = 1;
-  setsockopt(socket->fd(), SOL_SOCKET, SO_BROADCAST, &on, sizeof on);
-  Refusals::want(socket->fd());
-  socket_ = std::move(*socket);
+  if (const Result<void> opened = out_.open(kSendBuffer, kUnreadBuffer); !opened)
+    return Error{"OSC can't open a socket to send from: " + opened.error()};
   return {};
 }
 
@@ -95,35 +84,35 @@ void Sender::to_origin(const Origin& origin, std::span<const char> packet, bool 
   if (origin.ip == 0 || origin.port == 0 || origin.hand == Hand::query) return;
   const Endpoint to{origin.ip, origin.port};
   const int listening = answer ? reply_socket_(to) : -1;
-  datagram(listening >= 0 ? listening : socket_.fd(), to, packet);
+  if (listening < 0) return send_to(to, packet);
+  note_result(system::send_datagram(listening, to, packet), to, packet);
 }
 
 void Sender::to_targets(std::span<const char> packet, bool only_those_wanting_errors) {
   for (const Target& target : targets_) {
-    if (!only_those_wanting_errors || target.wish.errors) datagram(socket_.fd(), target.at, packet);
+    if (!only_those_wanting_errors || target.wish.errors) send_to(target.at, packet);
   }
 }
 
 void Sender::to_subscribers(std::span<const char> packet) {
   for (const Endpoint& end : subscribers_) {
     const bool target_too = std::ranges::any_of(targets_, [&](const Target& t) { return t.at == end; });
-    if (!target_too) datagram(socket_.fd(), end, packet);
+    if (!target_too) send_to(end, packet);
   }
 }
 
-void Sender::datagram(int fd, const Endpoint& to, std::span<const char> packet) {
-  const sockaddr_in address = socket_address(to);
-  const auto send = [&] {
-    const auto* where = reinterpret_cast<const sockaddr*>(&address);
-    return sendto(fd, packet.data(), packet.size(), MSG_DONTWAIT | MSG_NOSIGNAL, where, sizeof address) >= 0;
-  };
-  if (send() || (Refusals::tells_of_earlier(errno) && send())) {
+void Sender::send_to(const Endpoint& to, std::span<const char> packet) {
+  note_result(out_.send(to, packet), to, packet);
+}
+
+void Sender::note_result(int error, const Endpoint& to, std::span<const char> packet) {
+  if (error == 0) {
     counters_.sent.fetch_add(1, std::memory_order_relaxed);
     if (traffic_.watched()) note_sent(traffic_, to, packet);
     return;
   }
   counters_.unsent.fetch_add(1, std::memory_order_relaxed);
-  const std::string why = std::generic_category().message(errno);
+  const std::string why = std::generic_category().message(error);
   if (const auto more = failed_.ask(clock_.steady())) {
     log_warning("OSC out: can't send to {}: {}{}", endpoint_text(to), why, *more);
   }

@@ -7,13 +7,14 @@
 #include <span>
 #include <vector>
 
+#include "base/system/udp_socket.h"
 #include "engine/command.h"
 #include "engine/traffic.h"
 #include "osc/clock.h"
 #include "osc/encode.h"
+#include "osc/endpoint.h"
 #include "osc/error_limit.h"
 #include "osc/seldom.h"
-#include "osc/socket.h"
 
 namespace limber {
 
@@ -32,8 +33,9 @@ class Sender {
   Sender(Counters& counters, Traffic& traffic, std::function<int(const Endpoint&)> reply_socket, const NetClock& clock);
 
   Result<void> open();
-  void close() { socket_ = Socket(); }
-  int fd() const { return socket_.fd(); }
+  void close() { out_.close(); }
+  /// The socket, from which streams are sent too.
+  system::UdpSender& socket() { return out_; }
   void set_targets(std::vector<Target> targets) { targets_ = std::move(targets); }
   /// Who gets events beside them.
   void set_subscribers(std::vector<Endpoint> ends) { subscribers_ = std::move(ends); }
@@ -47,13 +49,14 @@ class Sender {
   void to_origin(const Origin& origin, std::span<const char> packet, bool answer);
   void to_targets(std::span<const char> packet, bool only_those_wanting_errors);
   void to_subscribers(std::span<const char> packet);
-  void datagram(int fd, const Endpoint& to, std::span<const char> packet);
+  void send_to(const Endpoint& to, std::span<const char> packet);
+  void note_result(int error, const Endpoint& to, std::span<const char> packet);
 
   Counters& counters_;
   Traffic& traffic_;
   std::function<int(const Endpoint&)> reply_socket_;
   const NetClock& clock_;
-  Socket socket_;
+  system::UdpSender out_;
   std::vector<Target> targets_;
   std::vector<Endpoint> subscribers_;
   ErrorLimit limit_;

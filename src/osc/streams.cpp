@@ -6,8 +6,8 @@
 #include <utility>
 
 #include "base/log.h"
+#include "base/system/udp_socket.h"
 #include "base/text.h"
-#include "osc/batch.h"
 #include "osc/tap.h"
 
 namespace limber {
@@ -36,7 +36,7 @@ void Streams::set_targets(const std::vector<Target>& targets) {
   streams_ = std::move(streams);
 }
 
-void Streams::send_due(int fd) {
+void Streams::send_due(system::UdpSender& sender) {
   const std::int64_t now = clock_.steady();
   std::shared_ptr<const Snapshot> snapshot;
   for (const auto& stream : streams_) {
@@ -44,11 +44,11 @@ void Streams::send_due(int fd) {
     const std::int64_t period = period_of(stream->target.wish);
     stream->due += ((now - stream->due) / period + 1) * period;
     if (!snapshot) snapshot = link_.snapshots.read();
-    if (snapshot) send_frame(fd, *stream, *snapshot);
+    if (snapshot) send_frame(sender, *stream, *snapshot);
   }
 }
 
-void Streams::send_frame(int fd, Stream& stream, const Snapshot& snapshot) {
+void Streams::send_frame(system::UdpSender& sender, Stream& stream, const Snapshot& snapshot) {
   stream.frame.lay_out(snapshot.roster, stream.target.wish);
   if (!stream.frame.too_large().empty() && stream.said_too_large != snapshot.roster) {
     stream.said_too_large = snapshot.roster;
@@ -56,8 +56,8 @@ void Streams::send_frame(int fd, Stream& stream, const Snapshot& snapshot) {
                 printable(stream.frame.too_large().front()));
   }
   stream.frame.fill(snapshot);
-  const BatchResult result =
-      send_batch(fd, stream.target.at, stream.frame.bytes(), stream.frame.datagram_sizes(), stream.segmentation);
+  const system::BatchResult result =
+      sender.send(stream.target.at, stream.frame.bytes(), stream.frame.datagram_sizes(), stream.segmentation);
   link_.counters.sent.fetch_add(result.sent, std::memory_order_relaxed);
   if (link_.traffic.watched()) note_frame(stream, result.sent);
   if (result.error == 0) return;

@@ -23,7 +23,7 @@ class Streams {
   /// Targets that stand in the old list too keep their beat.
   void set_targets(const std::vector<Target>& targets);
   /// Sends what is due. A paused world's snapshot is sent again and again.
-  void send_due(int fd);
+  void send_due(system::UdpSender& sender);
   /// Nanoseconds until the next frame; nothing without streams.
   std::optional<std::int64_t> wait() const;
 
@@ -37,7 +37,7 @@ class Streams {
     bool segmentation = true;
   };
 
-  void send_frame(int fd, Stream& stream, const Snapshot& snapshot);
+  void send_frame(system::UdpSender& sender, Stream& stream, const Snapshot& snapshot);
   void note_frame(const Stream& stream, std::size_t datagrams);
 
   EngineLink& link_;

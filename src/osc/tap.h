@@ -4,7 +4,7 @@
 #include <span>
 
 #include "engine/traffic.h"
-#include "osc/socket.h"
+#include "osc/endpoint.h"
 
 namespace limber {
 

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "base/clock_seconds.h"
+#include "base/system/clock.h"
 #include "engine/link.h"
 #include "query/client.h"
 #include "query/request.h"
@@ -25,7 +25,7 @@ class Hall {
   using Answer = std::function<void(HttpAnswer answer)>;
 
   /// `now` reads a clock in seconds. `link` outlives it.
-  Hall(EngineLink& link, QueryDoors doors, std::vector<std::string> names, double (*now)() = &clock_seconds);
+  Hall(EngineLink& link, QueryDoors doors, std::vector<std::string> names, double (*now)() = &system::clock_seconds);
 
   const QueryDoors& doors() const { return doors_; }
   HostInfo info() const;

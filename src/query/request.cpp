@@ -1,8 +1,6 @@
 // Paths and attributes of OSCQuery; the statuses are its own: 204 nothing to tell, 400, 403, 404.
 #include "query/request.h"
 
-#include <arpa/inet.h>
-
 #include <algorithm>
 #include <array>
 #include <cctype>
@@ -11,6 +9,7 @@
 #include <fmt/format.h>
 
 #include "base/build_info.h"
+#include "base/system/socket.h"
 #include "base/text.h"
 #include "query/page.h"
 #include "query/row_face.h"
@@ -60,11 +59,6 @@ std::string lower(std::string_view text) {
 std::string_view host_name(std::string_view host) {
   if (host.starts_with('[')) return host.substr(1, std::min(host.find(']'), host.size()) - 1);
   return host.substr(0, host.find(':'));
-}
-
-bool is_number(const std::string& name) {
-  std::array<unsigned char, 16> bytes;
-  return inet_pton(AF_INET, name.c_str(), bytes.data()) == 1 || inet_pton(AF_INET6, name.c_str(), bytes.data()) == 1;
 }
 
 // a request's target: the path as it was sent, and what stands behind the ?
@@ -133,7 +127,7 @@ std::optional<HttpAnswer> refuse_stranger(const HttpRequest& request, const Host
   std::string name(host_name(host));
   if (name.ends_with('.')) name.pop_back();
   const bool ours =
-      name == "localhost" || is_number(name) ||
+      name == "localhost" || system::is_ip_address(name) ||
       std::any_of(info.names.begin(), info.names.end(), [&](const std::string& n) { return lower(n) == name; });
   if (!ours) {
     return refusal(403,

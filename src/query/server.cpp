@@ -1,10 +1,6 @@
 // One io_context on one thread: accepting, the engine's bell, the beat.
 #include "query/server.h"
 
-#include <pthread.h>
-#include <unistd.h>
-
-#include <array>
 #include <chrono>
 #include <exception>
 #include <thread>
@@ -17,8 +13,9 @@
 #include <boost/asio/steady_timer.hpp>
 
 #include "base/log.h"
+#include "base/system/process.h"
+#include "base/system/thread.h"
 #include "base/text.h"
-#include "base/wake.h"
 #include "query/connection.h"
 
 namespace limber {
@@ -34,15 +31,15 @@ constexpr const char* kCure =
 
 // as a machine beside this one may call it
 std::vector<std::string> own_names() {
-  std::array<char, 256> name{};
-  if (gethostname(name.data(), name.size() - 1) != 0) return {};
-  return {name.data(), fmt::format("{}.local", name.data())};
+  const std::string name = system::host_name();
+  if (name.empty()) return {};
+  return {name, fmt::format("{}.local", name)};
 }
 
 }  // namespace
 
 struct QueryServer::Running {
-  Running(EngineLink& link, QueryDoors doors, const std::shared_ptr<Wake>& bell)
+  Running(EngineLink& link, QueryDoors doors, const std::shared_ptr<system::Wake>& bell)
       : wake(bell), hall(link, std::move(doors), own_names()) {}
   ~Running() {
     io.stop();
@@ -70,10 +67,10 @@ struct QueryServer::Running {
     listen_for_bell();
     beat();
     thread = std::thread([this] { run(); });
-    pthread_setname_np(thread.native_handle(), "limber-query");
   }
 
   void run() {
+    system::name_this_thread("limber-query");
     for (;;) {
       try {
         io.run();
@@ -103,7 +100,7 @@ struct QueryServer::Running {
   void listen_for_bell() {
     descriptor.async_wait(net::posix::stream_descriptor::wait_read, [this](error_code error) {
       if (error) return;
-      wake->answer();
+      wake->clear();
       hall.bell();
       listen_for_bell();
     });
@@ -119,7 +116,7 @@ struct QueryServer::Running {
     });
   }
 
-  const std::shared_ptr<Wake> wake;
+  const std::shared_ptr<system::Wake> wake;
   Hall hall;
   QueryDesk desk{hall};
   // behind what its handlers use: it takes them along when it goes
@@ -132,8 +129,8 @@ struct QueryServer::Running {
 };
 
 QueryServer::QueryServer(EngineLink& link, QueryDoors doors)
-    : link_(link), doors_(std::move(doors)), wake_(std::make_shared<Wake>()) {
-  link_.wake_query = [wake = wake_] { wake->ring(); };
+    : link_(link), doors_(std::move(doors)), wake_(std::make_shared<system::Wake>()) {
+  link_.wake_query = [wake = wake_] { wake->notify(); };
 }
 
 QueryServer::~QueryServer() { stop(); }

@@ -7,6 +7,7 @@
 
 #include "base/osc_plan.h"
 #include "base/result.h"
+#include "base/system/wake.h"
 #include "engine/link.h"
 #include "query/doors.h"
 
@@ -35,7 +36,7 @@ class QueryServer {
   EngineLink& link_;
   QueryDoors doors_;
   std::unique_ptr<Running> running_;
-  std::shared_ptr<class Wake> wake_;
+  std::shared_ptr<system::Wake> wake_;
 };
 
 }  // namespace limber

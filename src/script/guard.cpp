@@ -11,12 +11,12 @@
 #include <utility>
 
 #include <fmt/format.h>
-#include <sys/time.h>
 
 #include <lua.hpp>
 
 #include "base/check.h"
 #include "base/key_bytes.h"
+#include "base/system/signals.h"
 #include "script/call_ledger.h"
 #include "script/context.h"
 
@@ -83,12 +83,7 @@ bool Guard::arm() {
   if (!live_guard.compare_exchange_strong(nobody, this)) return false;
   luaJIT_profile_start(state_, "li1000000000", no_profile, nullptr);
   // only its handler is wanted, not its clock
-  struct sigaction profiler {};
-  sigaction(SIGPROF, nullptr, &profiler);
-  leave_compiled_code = profiler.sa_handler;
-  const itimerval never{};
-  setitimer(ITIMER_PROF, &never, nullptr);
-  signal(SIGPROF, SIG_IGN);
+  leave_compiled_code = system::take_profile_handler();
   luaJIT_setmode(state_, 0, LUAJIT_MODE_ENGINE | LUAJIT_MODE_ON);
   live_ = true;
   return true;

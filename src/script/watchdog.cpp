@@ -6,10 +6,8 @@
 #include <chrono>
 #include <csignal>
 
-#include <dlfcn.h>
-#include <pthread.h>
-#include <sys/syscall.h>
-#include <unistd.h>
+#include "base/system/signals.h"
+#include "base/system/thread.h"
 
 namespace limber {
 
@@ -32,12 +30,6 @@ void store(T& word, T value, std::memory_order order = std::memory_order_relaxed
   std::atomic_ref(word).store(value, order);
 }
 
-std::int64_t nanoseconds(clockid_t clock) {
-  timespec time{};
-  if (clock_gettime(clock, &time) != 0) return -1;
-  return std::int64_t{time.tv_sec} * 1'000'000'000 + time.tv_nsec;
-}
-
 // runs anywhere inside the call: in Lua, in compiled code, in C++. A signal that comes late finds another number
 #if defined(__GNUC__)
 __attribute__((no_sanitize("thread")))
@@ -52,26 +44,9 @@ void on_signal(int) {
   if (__atomic_load_n(&watch->asked, __ATOMIC_RELAXED) == call) watch->stop(*watch);
 }
 
-void install_handler() {
-  struct sigaction action {};
-  action.sa_handler = on_signal;
-  action.sa_flags = SA_RESTART;
-  sigemptyset(&action.sa_mask);
-  // the C library's own: a sanitizer's wrapper would put a signal off until the next call that it knows, and compiled
-  // Lua makes none
-  using Function = decltype(&sigaction);
-  const auto own = reinterpret_cast<Function>(dlsym(RTLD_NEXT, "__sigaction"));
-  (own == nullptr ? &sigaction : own)(kSignal, &action, nullptr);
-}
-
 struct ThisThread {
-  pid_t id = static_cast<pid_t>(syscall(SYS_gettid));
-  clockid_t clock = clock_of_it();
-  static clockid_t clock_of_it() {
-    clockid_t clock{};
-    pthread_getcpuclockid(pthread_self(), &clock);
-    return clock;
-  }
+  std::uint64_t id = system::this_thread();
+  std::int64_t clock = system::this_thread_clock();
 };
 
 }  // namespace
@@ -109,7 +84,8 @@ std::shared_ptr<Watchdog> Watchdog::instance() {
 }
 
 Watchdog::Watchdog() {
-  install_handler();
+  // compiled Lua makes no calls, to which a sanitizer could put the handler off
+  system::handle_signal_at_once(kSignal, on_signal);
   thread_ = std::thread([this] { run(); });
 }
 
@@ -152,7 +128,7 @@ void Watchdog::run() {
 std::int64_t Watchdog::look(Watch& watch, std::int64_t poll) {
   const std::uint64_t call = load(watch.call, std::memory_order_acquire);
   if ((call & 1u) == 0) return poll;
-  const std::int64_t now = nanoseconds(load(watch.clock));
+  const std::int64_t now = system::cpu_nanoseconds(load(watch.clock));
   if (now < 0) return poll;  // its thread has ended
   if (watch.seen != call) {
     watch.seen = call;
@@ -168,7 +144,7 @@ std::int64_t Watchdog::look(Watch& watch, std::int64_t poll) {
   const std::int64_t left = part - (now - watch.since);
   if (left > 0) return std::min(left, poll);
   store(watch.second_half ? watch.asked : watch.hailed, call);
-  syscall(SYS_tgkill, getpid(), load(watch.thread), kSignal);
+  system::signal_thread(load(watch.thread), kSignal);
   return watch.second_half ? std::min(poll, kAgain) : kAnswer;
 }
 

@@ -6,13 +6,10 @@
 
 #include <condition_variable>
 #include <cstdint>
-#include <ctime>
 #include <memory>
 #include <mutex>
 #include <thread>
 #include <vector>
-
-#include <sys/types.h>
 
 namespace limber {
 
@@ -28,8 +25,8 @@ struct Watch {
   std::uint64_t hailed = 0;    ///< The call that is to answer.
   std::uint64_t answered = 0;  ///< The call that has answered.
   std::int64_t budget = 0;     ///< CPU time of the call, ns.
-  clockid_t clock = 0;         ///< Of the thread that runs the call.
-  pid_t thread = 0;
+  std::int64_t clock = 0;      ///< Of the thread that runs the call (base/system/thread.h).
+  std::uint64_t thread = 0;
 
   /// A call begins and ends on this thread. No lock, no allocation; a few nanoseconds.
   void begin(std::int64_t budget_ns);

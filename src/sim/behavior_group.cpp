@@ -7,9 +7,9 @@
 
 #include <fmt/format.h>
 
-#include "base/clock_seconds.h"
 #include "base/hash.h"
 #include "base/log.h"
+#include "base/system/clock.h"
 #include "base/text.h"
 #include "sim/behavior_list.h"
 #include "sim/world.h"
@@ -200,7 +200,7 @@ void BehaviorGroup::prepare_members() {
 }
 
 void BehaviorGroup::step(double dt) {
-  const double start = clock_seconds();
+  const double start = system::clock_seconds();
   if (!laid_out_) lay_out();
   const std::uint64_t seed = world_.seed();
   if (attention_ || std::exchange(seed_, seed) != seed) prepare_members();
@@ -220,7 +220,7 @@ void BehaviorGroup::step(double dt) {
     running_numbers_.push_back(i);
   }
   if (!running_.empty()) running_.front()->step_group(running_, dt);
-  seconds_ = clock_seconds() - start;
+  seconds_ = system::clock_seconds() - start;
 }
 
 std::uint64_t BehaviorGroup::state_hash(std::uint64_t hash) const {

@@ -7,8 +7,8 @@
 
 #include <fmt/format.h>
 
-#include "base/clock_seconds.h"
 #include "base/log.h"
+#include "base/system/clock.h"
 #include "base/text.h"
 #include "sim/world.h"
 
@@ -279,18 +279,18 @@ void BehaviorList::step(double dt) {
   follow_bodies();
   turn_++;
   stepping_ = true;
-  double before = clock_seconds();
+  double before = system::clock_seconds();
   for (std::size_t i = 0; i < entries_.size(); i++) {
     if (BehaviorGroup* group = entries_[i].group.get()) {
       group->step(dt);
-      before = clock_seconds();
+      before = system::clock_seconds();
       continue;
     }
     Behavior* const behavior = entries_[i].single.get();
     if (behavior == nullptr) continue;  // removed in this step
     if (behavior->runs()) behavior->prepare();
     if (behavior->runs()) behavior->step(dt);
-    const double now = clock_seconds();
+    const double now = system::clock_seconds();
     behavior->seconds_ = now - std::exchange(before, now);
   }
   stepping_ = false;

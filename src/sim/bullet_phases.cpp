@@ -3,7 +3,7 @@
 
 #include <string_view>
 
-#include "base/clock_seconds.h"
+#include "base/system/clock.h"
 #include "sim/bullet.h"
 
 namespace limber {
@@ -39,14 +39,14 @@ void enter(const char* name) {
     if (zone.name != name) continue;
     counting.from = counting.level;
     counting.phase = zone.phase;
-    counting.start = clock_seconds();
+    counting.start = system::clock_seconds();
     return;
   }
 }
 
 void leave() {
   if (counting.level == counting.from) {
-    counting.phases.*counting.phase += clock_seconds() - counting.start;
+    counting.phases.*counting.phase += system::clock_seconds() - counting.start;
     counting.from = 0;
   }
   counting.level--;

@@ -5,9 +5,9 @@
 
 #include <fmt/format.h>
 
-#include "base/clock_seconds.h"
 #include "base/hash.h"
 #include "base/log.h"
+#include "base/system/clock.h"
 #include "base/text.h"
 #include "sim/health.h"
 
@@ -241,9 +241,9 @@ void World::settle() {
 
 void World::step() {
   if (team_ != nullptr && bullet_->getNumCollisionObjects() > kPlaces) team_->rouse();
-  const double begin = clock_seconds();
+  const double begin = system::clock_seconds();
   if (!panic_.on()) behaviors_->step(timestep());
-  const double start = clock_seconds();
+  const double start = system::clock_seconds();
   settle();
   for (const auto& body : bodies_) {
     if (std::exchange(body->fresh_, false)) body->take_start_pose();
@@ -254,10 +254,10 @@ void World::step() {
   overlay_.take_loads(loads_);
   loads_.push();
   contacts_.begin_tick();
-  const double before = clock_seconds();
+  const double before = system::clock_seconds();
   const DirectCounts solved = bullet_->direct_counts();
   bullet_->step(timestep() / substeps(), substeps());
-  const double after = clock_seconds();
+  const double after = system::clock_seconds();
   contacts_.end_tick();
   tick_++;
   store_.tell(id_, *world_rows().time)[0] += timestep();
@@ -267,7 +267,7 @@ void World::step() {
   tell_bodies();
   if (std::exchange(healed_, false)) settle_healed();
   camera_moves_.step();
-  times_ = {start - begin, before - start, after - before, clock_seconds() - after};
+  times_ = {start - begin, before - start, after - before, system::clock_seconds() - after};
 }
 
 bool World::awake_bodies_known() const {

@@ -129,9 +129,9 @@ void play(const RawScene& scene, const std::vector<Entrant>& entrants, std::vect
     for (std::size_t k = 0; k < contenders.size(); ++k) {
       Contender& contender = *contenders[k];
       for (int i = from; i < std::min(steps, from + kTurn); ++i) {
-        const double start = thread_seconds();
+        const double start = system::thread_seconds();
         contender.step();
-        results[k].times.add(thread_seconds() - start);
+        results[k].times.add(system::thread_seconds() - start);
         results[k].gap = std::max(results[k].gap, look.gap(contender));
         results[k].servo_error = std::max(results[k].servo_error, look.servo_error(contender, (i + 1) * scene.step));
       }

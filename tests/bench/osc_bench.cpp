@@ -8,7 +8,7 @@
 #include <thread>
 
 #include "base/log.h"
-#include "osc/batch.h"
+#include "base/system/udp_socket.h"
 #include "osc/decode.h"
 #include "osc/network.h"
 #include "osc/osc_test_tools.h"
@@ -139,7 +139,8 @@ void osc_frame_send(benchmark::State& state) {
   wish.bundle = static_cast<int>(state.range(0));
   StreamFrame frame(kTestOffsets);
   frame.lay_out(s.roster, wish);
-  const Socket sender = std::move(open_udp({}).value());
+  system::UdpSender sender;
+  if (!sender.open()) return state.SkipWithError("no socket");
   const Client client;
   std::atomic<bool> stop{false};
   std::atomic<std::uint64_t> got{0};
@@ -154,7 +155,7 @@ void osc_frame_send(benchmark::State& state) {
   for (auto _ : state) {
     bool segmentation = state.range(1) != 0;
     frame.fill(s);
-    sent += send_batch(sender.fd(), to, frame.bytes(), frame.datagram_sizes(), segmentation).sent;
+    sent += sender.send(to, frame.bytes(), frame.datagram_sizes(), segmentation).sent;
     if (state.range(2) == 1) {
       state.PauseTiming();
       const timespec pause{0, 4'000'000};

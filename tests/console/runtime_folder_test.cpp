@@ -9,6 +9,7 @@
 
 #include <algorithm>
 
+#include "base/system/local_socket.h"
 #include "console/private_folder.h"
 
 namespace limber {
@@ -77,16 +78,16 @@ TEST(RuntimeFolder, SocketsOfDeadProgramsAreRemoved) {
   const PrivateFolder folder;
   const std::string dead = socket_path(folder.path(), 123);
   const std::string alive = socket_path(folder.path(), 45);
-  { const Result<Descriptor> closes = listen_console(dead); }
-  const Result<Descriptor> listener = listen_console(alive);
+  { const Result<system::Descriptor> closes = system::listen_local(dead); }
+  const Result<system::Descriptor> listener = system::listen_local(alive);
   ASSERT_TRUE(listener.ok()) << listener.error();
   // what has nothing to do with us stays
   const std::string file = folder / "limber-9.sock";
   const std::string other = folder / "limber-x.sock";
   const std::string named = folder / "limber-77.sock.new";
   close(open(file.c_str(), O_CREAT | O_WRONLY, 0600));
-  { const Result<Descriptor> closes = listen_console(other); }
-  { const Result<Descriptor> closes = listen_console(named); }
+  { const Result<system::Descriptor> closes = system::listen_local(other); }
+  { const Result<system::Descriptor> closes = system::listen_local(named); }
   const std::vector<ConsoleSocket> found = console_sockets(folder.path());
   ASSERT_EQ(found.size(), 1U);
   EXPECT_EQ(found[0].pid, 45);
@@ -98,19 +99,19 @@ TEST(RuntimeFolder, SocketsOfDeadProgramsAreRemoved) {
 
 TEST(RuntimeFolder, ManyThatListenAreListedByNumber) {
   const PrivateFolder folder;
-  std::vector<Descriptor> listeners;
+  std::vector<system::Descriptor> listeners;
   for (const int pid : {300, 7, 12}) {
-    Result<Descriptor> listener = listen_console(socket_path(folder.path(), pid));
+    Result<system::Descriptor> listener = system::listen_local(socket_path(folder.path(), pid));
     ASSERT_TRUE(listener.ok());
     listeners.push_back(std::move(*listener));
   }
   // one whose queue is full is alive as well
-  std::vector<Descriptor> waiting;
+  std::vector<system::Descriptor> waiting;
   sockaddr_un at{};
   at.sun_family = AF_UNIX;
   socket_path(folder.path(), 7).copy(at.sun_path, sizeof at.sun_path - 1);
   while (waiting.size() < 100) {
-    Descriptor connection(socket(AF_UNIX, SOCK_STREAM | SOCK_NONBLOCK, 0));
+    system::Descriptor connection(socket(AF_UNIX, SOCK_STREAM | SOCK_NONBLOCK, 0));
     if (connect(connection.fd(), reinterpret_cast<const sockaddr*>(&at), sizeof at) != 0) break;
     waiting.push_back(std::move(connection));
   }
@@ -123,22 +124,23 @@ TEST(RuntimeFolder, ManyThatListenAreListedByNumber) {
 TEST(RuntimeFolder, ASocketIsItsOwnersAlone) {
   const PrivateFolder folder;
   const std::string path = socket_path(folder.path(), 5);
-  const Result<Descriptor> listener = listen_console(path);
+  const Result<system::Descriptor> listener = system::listen_local(path);
   ASSERT_TRUE(listener.ok()) << listener.error();
   EXPECT_EQ(mode_of(path), 0600U);
   EXPECT_FALSE(fs::exists(path + ".new"));
-  const Result<Descriptor> connection = connect_console(path);
+  const Result<system::Descriptor> connection = connect_console(path);
   ASSERT_TRUE(connection.ok()) << connection.error();
-  EXPECT_EQ(peer_user(*connection), static_cast<long>(geteuid()));
-  EXPECT_EQ(peer_user(Descriptor()), -1);
+  EXPECT_EQ(system::peer_user(*connection), static_cast<long>(geteuid()));
+  EXPECT_EQ(system::peer_user(system::Descriptor()), -1);
   // again at the same place, as a program with a dead one's number does
-  EXPECT_TRUE(listen_console(path).ok());
+  EXPECT_TRUE(system::listen_local(path).ok());
 }
 
 TEST(RuntimeFolder, WhatCanNotBeHadSaysWhy) {
   const PrivateFolder folder;
   EXPECT_EQ(connect_console(folder / "none.sock").error(), folder / "none.sock: No such file or directory");
-  EXPECT_EQ(listen_console(folder / "no/where.sock").error(), folder / "no/where.sock: No such file or directory");
+  EXPECT_EQ(system::listen_local(folder / "no/where.sock").error(),
+            folder / "no/where.sock: No such file or directory");
   const std::string longest = folder / (std::string(100, 'x') + ".sock");
   EXPECT_EQ(connect_console(longest).error(), longest + " is too long for a socket's path (107 bytes at most)");
 }

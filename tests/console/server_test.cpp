@@ -8,6 +8,7 @@
 
 #include "base/log.h"
 #include "base/random.h"
+#include "base/system/local_socket.h"
 #include "console/console_link.h"
 #include "console/private_folder.h"
 #include "engine/show.h"
@@ -50,9 +51,9 @@ struct ServerTest : testing::Test {
     ASSERT_TRUE(started.ok()) << started.error();
   }
   ConsoleLink connect() {
-    Result<Descriptor> connection = connect_console(server.path());
+    Result<system::Descriptor> connection = connect_console(server.path());
     EXPECT_TRUE(connection.ok()) << (connection.ok() ? "" : connection.error());
-    return ConsoleLink(connection ? std::move(*connection) : Descriptor());
+    return ConsoleLink(connection ? std::move(*connection) : system::Descriptor());
   }
   /// A console that was greeted.
   ConsoleLink enter() {
@@ -110,7 +111,7 @@ TEST_F(ServerTest, TheSocketIsThereWhileItRuns) {
   EXPECT_EQ(server.path(), "");
   // one of a program that died
   const std::string dead = socket_path(folder.path(), 1 << 30);
-  { const Result<Descriptor> closes = listen_console(dead); }
+  { const Result<system::Descriptor> closes = system::listen_local(dead); }
   start();
   const std::string path = server.path();
   EXPECT_EQ(path, socket_path(folder.path(), getpid()));
@@ -135,7 +136,7 @@ TEST_F(ServerTest, AnotherUserIsTurnedAway) {
   ConsoleServer others(show.link, {.folder = folder.path(), .scene = "", .user = static_cast<long>(geteuid()) + 1});
   ASSERT_TRUE(others.start().ok());
   const std::uint64_t warnings = log_count(LogLevel::warning);
-  Result<Descriptor> connection = connect_console(others.path());
+  Result<system::Descriptor> connection = connect_console(others.path());
   ASSERT_TRUE(connection.ok());
   ConsoleLink link(std::move(*connection));
   link.send({1, ConsoleRequest::Wish::evaluate, "ball:remove()"});

@@ -37,7 +37,7 @@ class Child {
       _exit(127);
     }
     close(ends[1]);
-    output_ = Socket(ends[0]);
+    output_ = system::Descriptor(ends[0]);
   }
   ~Child() { end(); }
 
@@ -79,7 +79,7 @@ class Child {
 
  private:
   pid_t pid_ = -1;
-  Socket output_;
+  system::Descriptor output_;
   std::string text_;
 };
 

@@ -45,7 +45,7 @@ struct NetworkDesk {
 
 // how many small datagrams the kernel keeps for us at most; facts measured: 10 000 need 4 MiB, granted as 8
 bool buffer_granted() {
-  const Socket probe = std::move(open_udp({0x7f000001, 0}).value());
+  const system::UdpSocket probe = std::move(system::open_udp({0x7f000001, 0}).value());
   const int wanted = 4 << 20;
   setsockopt(probe.fd(), SOL_SOCKET, SO_RCVBUF, &wanted, sizeof wanted);
   int granted = 0;

@@ -1,9 +1,7 @@
 // Tools of the OSC tests: packets written by hand, a UDP client, a clock that is turned by hand, an inbox to wait at.
 #pragma once
 
-#include <netinet/in.h>
 #include <poll.h>
-#include <sys/socket.h>
 
 #include <chrono>
 #include <condition_variable>
@@ -14,10 +12,12 @@
 #include <string_view>
 #include <vector>
 
+#include "base/system/socket_address.h"
+#include "base/system/udp_socket.h"
 #include "engine/link.h"
 #include "osc/bytes.h"
 #include "osc/clock.h"
-#include "osc/socket.h"
+#include "osc/endpoint.h"
 
 namespace limber::osc_test {
 
@@ -44,14 +44,14 @@ struct HandClock {
 /// A client's socket on this machine.
 class Client {
  public:
-  Client() : socket_(std::move(open_udp({0x7f000001, 0}).value())) {
+  Client() : socket_(std::move(system::open_udp({0x7f000001, 0}).value())) {
     const int size = 4 << 20;
     setsockopt(socket_.fd(), SOL_SOCKET, SO_RCVBUF, &size, sizeof size);
   }
 
   Endpoint end() const { return socket_.local(); }
   void send(const Endpoint& to, std::string_view bytes) const {
-    const sockaddr_in address = socket_address(to);
+    const sockaddr_in address = system::socket_address(to);
     sendto(socket_.fd(), bytes.data(), bytes.size(), 0, reinterpret_cast<const sockaddr*>(&address), sizeof address);
   }
   /// The next datagram and where it came from; nothing when none comes within `ms`.
@@ -64,13 +64,13 @@ class Client {
     const auto size =
         recvfrom(socket_.fd(), bytes.data(), bytes.size(), 0, reinterpret_cast<sockaddr*>(&address), &length);
     if (size < 0) return std::nullopt;
-    if (from != nullptr) *from = endpoint_of(address);
+    if (from != nullptr) *from = system::endpoint_of(address);
     bytes.resize(static_cast<std::size_t>(size));
     return bytes;
   }
 
  private:
-  Socket socket_;
+  system::UdpSocket socket_;
 };
 
 /// An engine's link without an engine: what arrives is collected.

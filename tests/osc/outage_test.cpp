@@ -143,7 +143,7 @@ TEST(Outage, ATargetThatRefusesIsSaidOnceAndServedWhenItListens) {
   }
   EXPECT_EQ(expected, 200);
 
-  const Result<Socket> back = open_udp(refuser);
+  const Result<system::UdpSocket> back = system::open_udp(refuser);
   ASSERT_TRUE(back.ok()) << back.error();
   pollfd p{back->fd(), POLLIN, 0};
   EXPECT_EQ(poll(&p, 1, kPatienceMs), 1) << "who listens again is sent to at once";

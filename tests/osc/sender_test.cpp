@@ -54,7 +54,7 @@ TEST(Sender, AnswersGoToTheAsker) {
 
 TEST(Sender, AnswersComeFromTheSocketThatWasAsked) {
   SenderDesk desk;
-  const Result<Socket> listening = open_udp({0x7f000001, 0});
+  const Result<system::UdpSocket> listening = system::open_udp({0x7f000001, 0});
   ASSERT_TRUE(listening.ok());
   desk.reply_fd = listening->fd();
   Endpoint from;

@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include "osc/batch.h"
+#include "base/system/udp_socket.h"
 #include "osc/osc_test_tools.h"
 #include "osc/stream_test_world.h"
 
@@ -11,6 +11,12 @@ namespace limber {
 namespace {
 
 using namespace osc_test;
+
+system::UdpSender open_sender() {
+  system::UdpSender sender;
+  EXPECT_TRUE(sender.open().ok());
+  return sender;
+}
 
 struct StreamsDesk {
   StreamsDesk() {
@@ -28,13 +34,13 @@ struct StreamsDesk {
   // sends what is due, as the loop does after its wait
   void wait_and_send() {
     hand.ns += streams.wait().value();
-    streams.send_due(sender.fd());
+    streams.send_due(sender);
   }
 
   FakeEngine engine;
   HandClock hand;
   NetClock clock = hand.clock();
-  Socket sender = std::move(open_udp({}).value());
+  system::UdpSender sender = open_sender();
   Streams streams{engine.link, kTestOffsets, clock};
   Client a, b;
 };
@@ -57,12 +63,12 @@ TEST(Streams, OneFrameAPeriodWithoutDrift) {
 TEST(Streams, EarlySendsNothing) {
   StreamsDesk desk;
   desk.streams.set_targets({desk.target(desk.a, 10)});
-  desk.streams.send_due(desk.sender.fd());
+  desk.streams.send_due(desk.sender);
   desk.hand.turn(0.0999);
-  desk.streams.send_due(desk.sender.fd());
+  desk.streams.send_due(desk.sender);
   EXPECT_EQ(desk.sent(), 1u);
   desk.hand.turn(0.0001);
-  desk.streams.send_due(desk.sender.fd());
+  desk.streams.send_due(desk.sender);
   EXPECT_EQ(desk.sent(), 2u);
 }
 
@@ -70,9 +76,9 @@ TEST(Streams, EarlySendsNothing) {
 TEST(Streams, MissedFramesAreLeftOut) {
   StreamsDesk desk;
   desk.streams.set_targets({desk.target(desk.a, 10)});
-  desk.streams.send_due(desk.sender.fd());
+  desk.streams.send_due(desk.sender);
   desk.hand.turn(0.25);
-  desk.streams.send_due(desk.sender.fd());
+  desk.streams.send_due(desk.sender);
   EXPECT_EQ(desk.sent(), 2u);
   EXPECT_EQ(desk.streams.wait(), 50'000'000);
 }
@@ -81,7 +87,7 @@ TEST(Streams, EachTargetHasItsRate) {
   StreamsDesk desk;
   desk.streams.set_targets({desk.target(desk.a, 100), desk.target(desk.b, 25)});
   for (int i = 0; i <= 100; i++) {
-    desk.streams.send_due(desk.sender.fd());
+    desk.streams.send_due(desk.sender);
     desk.hand.turn(0.01);
   }
   int frames_a = 0;
@@ -95,11 +101,11 @@ TEST(Streams, EachTargetHasItsRate) {
 TEST(Streams, OldTargetsKeepTheirBeat) {
   StreamsDesk desk;
   desk.streams.set_targets({desk.target(desk.a, 10)});
-  desk.streams.send_due(desk.sender.fd());
+  desk.streams.send_due(desk.sender);
   desk.hand.turn(0.04);
   desk.streams.set_targets({desk.target(desk.b, 1), desk.target(desk.a, 10)});
   EXPECT_EQ(desk.streams.wait(), 0) << "the new one begins at once";
-  desk.streams.send_due(desk.sender.fd());
+  desk.streams.send_due(desk.sender);
   EXPECT_EQ(desk.sent(), 2u);
   EXPECT_EQ(desk.streams.wait(), 60'000'000) << "the old one has 60 ms left";
   desk.streams.set_targets({});
@@ -118,16 +124,16 @@ TEST(Streams, BeforeTheFirstSnapshotNothingIsSent) {
   FakeEngine engine;
   const NetClock clock;
   const Client client;
-  const Socket sender = std::move(open_udp({}).value());
+  system::UdpSender sender = open_sender();
   Streams streams(engine.link, kTestOffsets, clock);
   streams.set_targets({{StreamTarget{}, client.end()}});
-  streams.send_due(sender.fd());
+  streams.send_due(sender);
   EXPECT_EQ(engine.link.counters.sent, 0u);
 }
 
 // runs of equal and unequal sizes arrive as they were cut, whether the kernel cuts or we do
 TEST(Batch, DatagramsArriveWhole) {
-  const Socket sender = std::move(open_udp({}).value());
+  system::UdpSender sender = open_sender();
   for (const bool segmentation : {true, false}) {
     const Client client;
     std::vector<std::string> given;
@@ -140,7 +146,7 @@ TEST(Batch, DatagramsArriveWhole) {
       sizes.push_back(static_cast<std::uint32_t>(size));
     }
     bool may_segment = segmentation;
-    const BatchResult result = send_batch(sender.fd(), client.end(), bytes, sizes, may_segment);
+    const system::BatchResult result = sender.send(client.end(), bytes, sizes, may_segment);
     EXPECT_EQ(result.sent, 500u);
     EXPECT_EQ(result.error, 0);
     std::size_t at = 0;
@@ -155,11 +161,11 @@ TEST(Batch, DatagramsArriveWhole) {
 }
 
 TEST(Batch, ErrorIsAnAnswer) {
-  const Socket sender = std::move(open_udp({}).value());
+  system::UdpSender sender = open_sender();
   bool segmentation = true;
   const std::string bytes(std::size_t{2} * 65508, 'x');  // larger than UDP carries
   const std::vector<std::uint32_t> sizes = {65508, 65508};
-  const BatchResult result = send_batch(sender.fd(), {0x7f000001, 9}, bytes, sizes, segmentation);
+  const system::BatchResult result = sender.send({0x7f000001, 9}, bytes, sizes, segmentation);
   EXPECT_EQ(result.sent, 0u);
   EXPECT_EQ(result.error, EMSGSIZE);
 }

@@ -3,7 +3,7 @@
 
 #include <utility>
 
-namespace limber {
+namespace limber::system {
 
 class Descriptor {
  public:
@@ -25,4 +25,4 @@ class Descriptor {
   int fd_ = -1;
 };
 
-}  // namespace limber
+}  // namespace limber::system

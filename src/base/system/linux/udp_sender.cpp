@@ -1,18 +1,16 @@
-// sendmmsg over runs of equal datagrams.
-#include "osc/batch.h"
-
-#include <netinet/in.h>
+// sendmmsg over runs of equal datagrams, and the kernel's error queue (ip(7), IP_RECVERR).
 #include <netinet/udp.h>
-#include <sys/socket.h>
+
+#include "base/system/socket_address.h"
+#include "base/system/udp_socket.h"
+// behind the others: it uses their types
+#include <linux/errqueue.h>
 
 #include <array>
 #include <cerrno>
 #include <cstring>
-#include <optional>
 
-#include "osc/refusals.h"
-
-namespace limber {
+namespace limber::system {
 
 namespace {
 
@@ -30,7 +28,7 @@ struct Call {
   std::array<Control, kCalls> control{};
 };
 
-// how many datagrams from `first` on make one piece
+// number of datagrams from `first` on that make one piece
 std::size_t run_length(std::span<const std::uint32_t> sizes, std::size_t first, bool segmentation) {
   if (!segmentation) return 1;
   const std::uint32_t size = sizes[first];
@@ -63,12 +61,10 @@ void add_piece(Call& call, std::size_t i, const sockaddr_in& to, const char* dat
   std::memcpy(CMSG_DATA(c), &size, sizeof size);
 }
 
-// errors by which the kernel says that it can't cut on this route
+// errors that mean that the kernel can't cut on this route
 bool segmentation_refused(int error) {
   return error == EIO || error == EINVAL || error == EMSGSIZE || error == ENOPROTOOPT || error == EOPNOTSUPP;
 }
-
-}  // namespace
 
 BatchResult send_batch(int fd, const Endpoint& to, std::span<const char> bytes, std::span<const std::uint32_t> sizes,
                        bool& segmentation) {
@@ -89,7 +85,7 @@ BatchResult send_batch(int fd, const Endpoint& to, std::span<const char> bytes, 
     const int done = sendmmsg(fd, call.headers.data(), static_cast<unsigned>(count), MSG_DONTWAIT | MSG_NOSIGNAL);
     if (done < 0) {
       if (errno == EINTR) continue;
-      if (Refusals::tells_of_earlier(errno) && again != result.sent) {
+      if (reports_earlier(errno) && again != result.sent) {
         again = result.sent;
         continue;
       }
@@ -108,4 +104,71 @@ BatchResult send_batch(int fd, const Endpoint& to, std::span<const char> bytes, 
   return result;
 }
 
-}  // namespace limber
+// the error of one that came back; 0: it is something else
+int error_of(msghdr& message) {
+  for (cmsghdr* c = CMSG_FIRSTHDR(&message); c != nullptr; c = CMSG_NXTHDR(&message, c)) {
+    if (c->cmsg_level != IPPROTO_IP || c->cmsg_type != IP_RECVERR) continue;
+    sock_extended_err report{};
+    std::memcpy(&report, CMSG_DATA(c), sizeof report);
+    if (report.ee_origin == SO_EE_ORIGIN_ICMP) return static_cast<int>(report.ee_errno);
+  }
+  return 0;
+}
+
+}  // namespace
+
+struct UdpSender::State {
+  UdpSocket socket;
+};
+
+UdpSender::UdpSender() = default;
+UdpSender::~UdpSender() = default;
+UdpSender::UdpSender(UdpSender&&) noexcept = default;
+UdpSender& UdpSender::operator=(UdpSender&&) noexcept = default;
+
+Result<void> UdpSender::open(int send_buffer, int receive_buffer) {
+  Result<UdpSocket> socket = open_udp({});
+  if (!socket) return Error{socket.error()};
+  if (send_buffer > 0) set_send_buffer(socket->fd(), send_buffer);
+  if (receive_buffer > 0) set_receive_buffer(socket->fd(), receive_buffer);
+  allow_broadcast(socket->fd());
+  const int on = 1;
+  setsockopt(socket->fd(), IPPROTO_IP, IP_RECVERR, &on, sizeof on);
+  state_ = std::make_unique<State>(State{std::move(*socket)});
+  return {};
+}
+
+void UdpSender::close() { state_.reset(); }
+
+int UdpSender::send(const Endpoint& to, std::span<const char> packet) {
+  return send_datagram(state_ == nullptr ? -1 : state_->socket.fd(), to, packet);
+}
+
+BatchResult UdpSender::send(const Endpoint& to, std::span<const char> bytes, std::span<const std::uint32_t> sizes,
+                            bool& segmentation) {
+  return send_batch(state_ == nullptr ? -1 : state_->socket.fd(), to, bytes, sizes, segmentation);
+}
+
+std::optional<SendFailure> UdpSender::next_failure() {
+  struct alignas(cmsghdr) Control {
+    std::array<char, 256> bytes;
+  };
+  while (state_ != nullptr) {
+    Control control;
+    sockaddr_in to{};
+    char nothing = 0;
+    iovec piece{&nothing, sizeof nothing};
+    msghdr message{};
+    message.msg_name = &to;
+    message.msg_namelen = sizeof to;
+    message.msg_iov = &piece;
+    message.msg_iovlen = 1;
+    message.msg_control = control.bytes.data();
+    message.msg_controllen = control.bytes.size();
+    if (recvmsg(state_->socket.fd(), &message, MSG_ERRQUEUE | MSG_DONTWAIT) < 0) break;
+    if (const int error = error_of(message); error != 0) return SendFailure{endpoint_of(to), error};
+  }
+  return std::nullopt;
+}
+
+}  // namespace limber::system

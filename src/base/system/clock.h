@@ -1,0 +1,19 @@
+// Clocks that measure how long something takes, and the clock of file times. No run depends on their values. [any]
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+
+namespace limber::system {
+
+inline double clock_seconds() {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
+}
+
+/// Processor time of this thread, s: time of other programs and of a suspended program does not count.
+double thread_seconds();
+
+/// Time since 1970 as file systems report it, ns.
+std::int64_t file_clock_nanoseconds();
+
+}  // namespace limber::system

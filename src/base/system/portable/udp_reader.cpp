@@ -1,0 +1,47 @@
+// recvfrom. The system neither counts what it drops nor names the largest buffer.
+#include <array>
+#include <vector>
+
+#include "base/system/socket_address.h"
+#include "base/system/udp_socket.h"
+
+namespace limber::system {
+
+namespace {
+constexpr std::size_t kDatagram = 65536;  // more than UDP carries, so nothing is cut
+}  // namespace
+
+struct DatagramReader::Buffers {
+  std::vector<char> bytes = std::vector<char>(kMost * kDatagram);
+  std::array<Datagram, kMost> datagrams{};
+};
+
+DatagramReader::DatagramReader() : buffers_(std::make_unique<Buffers>()) {}
+DatagramReader::~DatagramReader() = default;
+
+std::span<const Datagram> DatagramReader::read(int fd) {
+  std::size_t got = 0;
+  for (; got < kMost; got++) {
+    char* const to = buffers_->bytes.data() + got * kDatagram;
+    sockaddr_in from{};
+    socklen_t length = sizeof from;
+    const ssize_t size = recvfrom(fd, to, kDatagram, MSG_DONTWAIT, reinterpret_cast<sockaddr*>(&from), &length);
+    if (size < 0) break;
+    buffers_->datagrams[got] = {to, static_cast<std::size_t>(size), endpoint_of(from), std::nullopt};
+  }
+  return std::span(buffers_->datagrams).first(got);
+}
+
+void count_dropped(int) {}
+
+int set_receive_buffer(int fd, int bytes) {
+  setsockopt(fd, SOL_SOCKET, SO_RCVBUF, &bytes, sizeof bytes);
+  int granted = 0;
+  socklen_t length = sizeof granted;
+  getsockopt(fd, SOL_SOCKET, SO_RCVBUF, &granted, &length);
+  return granted;
+}
+
+std::optional<long> max_receive_buffer() { return std::nullopt; }
+
+}  // namespace limber::system

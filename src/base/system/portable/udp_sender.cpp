@@ -1,0 +1,107 @@
+// A connected socket for each target: POSIX reports a datagram that came back only to a connected one, at its next
+// send. So each target gets its datagrams from a port of its own, and that a target is gone is known one datagram later
+// than on Linux.
+#include <array>
+#include <cerrno>
+#include <deque>
+#include <map>
+
+#include "base/system/open.h"
+#include "base/system/socket_address.h"
+#include "base/system/udp_socket.h"
+
+namespace limber::system {
+
+namespace {
+
+constexpr std::size_t kMostSockets = 128;    // the one that was used least recently is closed for another
+constexpr std::size_t kMostFailures = 1024;  // that wait for next_failure()
+
+}  // namespace
+
+struct UdpSender::State {
+  struct Connection {
+    Descriptor socket;
+    std::uint64_t used = 0;
+  };
+  int send_buffer = 0;
+  int receive_buffer = 0;
+  std::uint64_t uses = 0;
+  std::map<Endpoint, Connection> connections;
+  std::deque<SendFailure> failures;
+
+  // the socket of a target; -1: errno says why there is none
+  int socket_to(const Endpoint& to) {
+    auto known = connections.find(to);
+    if (known == connections.end()) {
+      Descriptor socket = open_socket(AF_INET, SOCK_DGRAM);
+      if (!socket.open()) return -1;
+      if (send_buffer > 0) set_send_buffer(socket.fd(), send_buffer);
+      if (receive_buffer > 0) set_receive_buffer(socket.fd(), receive_buffer);
+      allow_broadcast(socket.fd());
+      const sockaddr_in address = socket_address(to);
+      if (connect(socket.fd(), reinterpret_cast<const sockaddr*>(&address), sizeof address) != 0) return -1;
+      if (connections.size() >= kMostSockets) close_oldest();
+      known = connections.emplace(to, Connection{std::move(socket), 0}).first;
+    }
+    known->second.used = ++uses;
+    return known->second.socket.fd();
+  }
+
+  void close_oldest() {
+    auto oldest = connections.begin();
+    for (auto at = connections.begin(); at != connections.end(); ++at) {
+      if (at->second.used < oldest->second.used) oldest = at;
+    }
+    connections.erase(oldest);
+  }
+};
+
+UdpSender::UdpSender() = default;
+UdpSender::~UdpSender() = default;
+UdpSender::UdpSender(UdpSender&&) noexcept = default;
+UdpSender& UdpSender::operator=(UdpSender&&) noexcept = default;
+
+Result<void> UdpSender::open(int send_buffer, int receive_buffer) {
+  state_ = std::make_unique<State>();
+  state_->send_buffer = send_buffer;
+  state_->receive_buffer = receive_buffer;
+  return {};
+}
+
+void UdpSender::close() { state_.reset(); }
+
+int UdpSender::send(const Endpoint& to, std::span<const char> packet) {
+  if (state_ == nullptr) return EBADF;
+  const int fd = state_->socket_to(to);
+  if (fd < 0) return errno;
+  const auto send = [&] { return ::send(fd, packet.data(), packet.size(), MSG_DONTWAIT | kNoSignal) >= 0; };
+  if (send()) return 0;
+  const int error = errno;
+  if (!reports_earlier(error)) return error;
+  if (!send()) return errno;
+  if (state_->failures.size() < kMostFailures) state_->failures.push_back({to, error});
+  return 0;
+}
+
+BatchResult UdpSender::send(const Endpoint& to, std::span<const char> bytes, std::span<const std::uint32_t> sizes,
+                            bool& segmentation) {
+  segmentation = false;
+  BatchResult result;
+  for (const std::uint32_t size : sizes) {
+    result.error = send(to, bytes.first(size));
+    if (result.error != 0) break;
+    bytes = bytes.subspan(size);
+    result.sent++;
+  }
+  return result;
+}
+
+std::optional<SendFailure> UdpSender::next_failure() {
+  if (state_ == nullptr || state_->failures.empty()) return std::nullopt;
+  const SendFailure first = state_->failures.front();
+  state_->failures.pop_front();
+  return first;
+}
+
+}  // namespace limber::system

@@ -1,0 +1,70 @@
+// POSIX signals.
+#include "base/system/signals.h"
+
+#include <dlfcn.h>
+#include <pthread.h>
+#include <signal.h>
+#include <sys/time.h>
+
+#include <initializer_list>
+
+#include "base/system/blocked_signals.h"
+#include "base/system/thread.h"
+
+namespace limber::system {
+
+sigset_t blocked_signals() {
+  sigset_t set;
+  sigemptyset(&set);
+  for (const int signal : {SIGINT, SIGTERM, SIGHUP, SIGUSR1}) sigaddset(&set, signal);
+  return set;
+}
+
+Signal kind_of(int signal) {
+  if (signal <= 0) return Signal::none;
+  return signal == SIGUSR1 ? Signal::call : Signal::end;
+}
+
+void block_signals() {
+  const sigset_t set = blocked_signals();
+  pthread_sigmask(SIG_BLOCK, &set, nullptr);
+  ::signal(SIGPIPE, SIG_IGN);
+  ::signal(SIGXFSZ, SIG_IGN);  // then a file that may not grow is reported as a full disk is
+}
+
+void call_thread(std::uint64_t thread) { signal_thread(thread, SIGUSR1); }
+
+void handle_signal(int signal, SignalHandler handler) {
+  struct sigaction action {};
+  action.sa_handler = handler;  // without SA_RESTART
+  sigaction(signal, &action, nullptr);
+}
+
+void handle_signal_at_once(int signal, SignalHandler handler) {
+  struct sigaction action {};
+  action.sa_handler = handler;
+  action.sa_flags = SA_RESTART;
+  sigemptyset(&action.sa_mask);
+  // the C library's own, which a sanitizer does not wrap
+  using Function = decltype(&sigaction);
+  const auto own = reinterpret_cast<Function>(dlsym(RTLD_NEXT, "__sigaction"));
+  (own == nullptr ? &sigaction : own)(signal, &action, nullptr);
+}
+
+void block_signal(int signal) {
+  sigset_t set;
+  sigemptyset(&set);
+  sigaddset(&set, signal);
+  pthread_sigmask(SIG_BLOCK, &set, nullptr);
+}
+
+SignalHandler take_profile_handler() {
+  struct sigaction profiler {};
+  sigaction(SIGPROF, nullptr, &profiler);
+  const itimerval never{};
+  setitimer(ITIMER_PROF, &never, nullptr);
+  ::signal(SIGPROF, SIG_IGN);
+  return profiler.sa_handler;
+}
+
+}  // namespace limber::system

@@ -1,0 +1,46 @@
+// Datagrams one at a time.
+#include "base/system/udp_socket.h"
+
+#include <cerrno>
+#include <system_error>
+
+#include "base/system/open.h"
+#include "base/system/socket_address.h"
+
+namespace limber::system {
+
+Endpoint UdpSocket::local() const {
+  sockaddr_in address{};
+  socklen_t length = sizeof address;
+  if (getsockname(fd(), reinterpret_cast<sockaddr*>(&address), &length) != 0) return {};
+  return endpoint_of(address);
+}
+
+Result<UdpSocket> open_udp(const Endpoint& at) {
+  const auto why = [] { return Error{std::generic_category().message(errno)}; };
+  UdpSocket socket(open_socket(AF_INET, SOCK_DGRAM));
+  if (!socket.open()) return why();
+  const sockaddr_in address = socket_address(at);
+  if (bind(socket.fd(), reinterpret_cast<const sockaddr*>(&address), sizeof address) != 0) return why();
+  return socket;
+}
+
+void set_send_buffer(int fd, int bytes) { setsockopt(fd, SOL_SOCKET, SO_SNDBUF, &bytes, sizeof bytes); }
+
+void allow_broadcast(int fd) {
+  const int on = 1;
+  setsockopt(fd, SOL_SOCKET, SO_BROADCAST, &on, sizeof on);
+}
+
+bool reports_earlier(int error) { return error == ECONNREFUSED || error == EHOSTUNREACH || error == ENETUNREACH; }
+
+int send_datagram(int fd, const Endpoint& to, std::span<const char> packet) {
+  const sockaddr_in address = socket_address(to);
+  const auto send = [&] {
+    const auto* where = reinterpret_cast<const sockaddr*>(&address);
+    return sendto(fd, packet.data(), packet.size(), MSG_DONTWAIT | kNoSignal, where, sizeof address) >= 0;
+  };
+  return send() || (reports_earlier(errno) && send()) ? 0 : errno;
+}
+
+}  // namespace limber::system

@@ -1,0 +1,25 @@
+// mmap.
+#include "base/system/virtual_memory.h"
+
+#include <sys/mman.h>
+
+namespace limber::system {
+
+std::byte* reserve_memory(std::size_t bytes) {
+  void* const got = mmap(nullptr, bytes, PROT_NONE, MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);
+  return got == MAP_FAILED ? nullptr : static_cast<std::byte*>(got);
+}
+
+bool commit_memory(std::byte* place, std::size_t bytes) {
+  return mprotect(static_cast<void*>(place), bytes, PROT_READ | PROT_WRITE) == 0;
+}
+
+void release_memory(std::byte* place, std::size_t bytes) { munmap(static_cast<void*>(place), bytes); }
+
+void prefer_large_pages([[maybe_unused]] std::byte* place, [[maybe_unused]] std::size_t bytes) {
+#if defined(MADV_HUGEPAGE)
+  (void)madvise(static_cast<void*>(place), bytes, MADV_HUGEPAGE);
+#endif
+}
+
+}  // namespace limber::system

@@ -1,0 +1,13 @@
+// Endpoints of OSC: those of the operating system layer, by short names.
+#pragma once
+
+#include "base/system/socket.h"
+
+namespace limber {
+
+using system::Endpoint;
+using system::endpoint_text;
+using system::parse_ipv4;
+using system::resolve;
+
+}  // namespace limber
