@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cstdio>
-#include <fstream>
 #include <thread>
 
 #include <fmt/format.h>
@@ -24,6 +23,7 @@
 #include "app/bench_threads.h"
 #include "app/exit_code.h"
 #include "base/build_info.h"
+#include "base/system/process.h"
 #include "base/text.h"
 
 namespace limber {
@@ -65,12 +65,8 @@ Json run_swarm(const BenchOptions& options) { return bench_swarm(options.ticks);
 Json run_pile(const BenchOptions& options) { return bench_pile(options.ticks); }
 
 std::string cpu_name() {
-  std::ifstream info("/proc/cpuinfo");
-  for (std::string line; std::getline(info, line);) {
-    const std::size_t colon = line.find(": ");
-    if (line.starts_with("model name") && colon != std::string::npos) return printable(line.substr(colon + 2));
-  }
-  return "unknown";
+  const std::string name = system::processor_name();
+  return name.empty() ? "unknown" : printable(name);
 }
 
 Json machine() {

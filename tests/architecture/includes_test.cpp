@@ -18,6 +18,22 @@ TEST(Includes, EveryFileOfTheTreeLooksDown) {
   }
 }
 
+TEST(Includes, OnlyTheSystemLayerCallsTheOperatingSystem) {
+  for (const SourceFile& file : source_files("src", {".h", ".hpp", ".cpp", ".inc"})) {
+    for (const std::string& complaint : system_complaints(file.path, file.text)) ADD_FAILURE() << complaint;
+  }
+  // planted
+  EXPECT_EQ(system_complaints("src/app/a.cpp", "//\nint a = getpid();\n"),
+            std::vector<std::string>{"src/app/a.cpp:2: 'getpid(' is the operating system's: call it in "
+                                     "src/base/system/"});
+  for (const char* line :
+       {"pthread_kill(a, 1);", "ssize_t n = 0;", "f(\"/proc/self/exe\");", "if (::sendmmsg(a)) b();"})
+    EXPECT_EQ(system_complaints("src/osc/a.cpp", line).size(), 1U) << line;
+  for (const char* line : {"// getpid() is elsewhere", "target_pid_t = 1;", "my_getpid();", "window.poll(1);"})
+    EXPECT_TRUE(system_complaints("src/osc/a.cpp", line).empty()) << line;
+  EXPECT_TRUE(system_complaints("src/base/system/process.cpp", "return getpid();").empty());
+}
+
 TEST(Includes, EveryFolderOfSrcIsARoom) {
   const std::vector<std::string> known = rooms();
   for (const auto& entry : std::filesystem::directory_iterator(LIMBER_SOURCE_DIR "/src")) {
@@ -61,6 +77,11 @@ TEST(Includes, PlantedOnesAreFound) {
       {"src/sim/world.cpp", "#include <spdlog/spdlog.h>", "room base"},
       {"src/engine/clock.cpp", "#include <GLFW/glfw3.h>", "room app"},
       {"src/sim/world.cpp", "#include <Eigen/Dense>", "no known library"},
+      // the operating system outside its layer
+      {"src/osc/receive.cpp", "#include <sys/socket.h>", "src/base/system/"},
+      {"src/base/arena.cpp", "#include <sys/mman.h>", "src/base/system/"},
+      {"src/app/play.cpp", "#include <pthread.h>", "src/base/system/"},
+      {"src/script/determinism.cpp", "#include <dlfcn.h>", "src/base/system/"},
       // not from src/, no room, or hidden behind blanks
       {"src/sim/world.cpp", "#include \"body.h\"", "written from src/"},
       {"src/sim/world.cpp", "#include \"../engine/engine.h\"", "written from src/"},
@@ -88,7 +109,8 @@ TEST(Includes, GoodOnesAreNot) {
       {"src/behaviors/force.cpp", "#include \"sim/behavior.h\"", nullptr},
       {"src/engine/engine.cpp", "#include \"script/vm.h\"", nullptr},
       {"src/osc/receive.cpp", "#include \"engine/command.h\"", nullptr},
-      {"src/osc/receive.cpp", "#include <sys/socket.h>", nullptr},
+      {"src/base/system/socket.cpp", "#include <sys/socket.h>", nullptr},
+      {"src/sim/dense.cpp", "#include <immintrin.h>", nullptr},
       {"src/app/app.cpp", "#include \"osc/receive.h\"", nullptr},
       {"src/main.cpp", "#include \"app/app.h\"", nullptr},
       {"src/script/vm.cpp", "#include <lua.hpp>", nullptr},

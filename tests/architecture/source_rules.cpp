@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cctype>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
@@ -72,12 +73,24 @@ constexpr std::array kLibraries{
     Library{"nlohmann/", ""},
 };
 
-/// Headers of the C library and the kernel that have an ending or a folder; C++'s own have neither.
-constexpr std::array kSystem{"sys/",       "netinet/",    "arpa/",       "net/",        "linux/",   "unistd.h",
-                             "poll.h",     "fcntl.h",     "signal.h",    "pthread.h",   "sched.h",  "netdb.h",
-                             "ifaddrs.h",  "dirent.h",    "execinfo.h",  "dlfcn.h",     "glob.h",   "spawn.h",
-                             "termios.h",  "immintrin.h", "emmintrin.h", "xmmintrin.h", "malloc.h", "alloca.h",
-                             "ucontext.h", "cxxabi.h"};
+/// Headers of the operating system: for src/base/system alone.
+constexpr std::array kSystem{"sys/",       "netinet/", "arpa/",     "net/",    "linux/",    "unistd.h",  "poll.h",
+                             "fcntl.h",    "signal.h", "pthread.h", "sched.h", "netdb.h",   "ifaddrs.h", "dirent.h",
+                             "execinfo.h", "dlfcn.h",  "glob.h",    "spawn.h", "termios.h", "malloc.h",  "alloca.h",
+                             "ucontext.h", "pwd.h",    "grp.h",     "ftw.h",   "mach/",     "mach-o/",   "link.h"};
+constexpr std::string_view kSystemFolder = "src/base/system/";
+/// Its calls, which headers of C++ bring along too, and its files.
+constexpr std::array kSystemCalls{
+    "getpid(",     "getuid(",     "geteuid(",       "isatty(",      "ioctl(",     "fileno(",       "mmap(",
+    "munmap(",     "mprotect(",   "madvise(",       "ppoll(",       "pselect(",   "eventfd(",      "epoll_",
+    "inotify_",    "recvmmsg(",   "sendmmsg(",      "recvfrom(",    "recvmsg(",   "sendto(",       "sendmsg(",
+    "setsockopt(", "getsockopt(", "sigaction(",     "pthread_",     "sigset_t",   "sigtimedwait(", "setitimer(",
+    "dlopen(",     "dlsym(",      "clock_gettime(", "fsync(",       "fdatasync(", "flock(",        "fcntl(",
+    "fork(",       "posix_spawn", "waitpid(",       "mkdir(",       "chmod(",     "readlink(",     "syscall(",
+    "prctl(",      "sysconf(",    "setpriority(",   "gethostname(", "uname(",     "nanosleep(",    "usleep(",
+    "ssize_t",     "pid_t",       "clockid_t",      "mallinfo",     "\"/proc/",   "\"/sys/",       "\"/dev/"};
+/// Headers of the compiler and the processor.
+constexpr std::array kCompiler{"immintrin.h", "emmintrin.h", "xmmintrin.h", "arm_neon.h", "cxxabi.h"};
 
 bool has_word(std::string_view words, std::string_view word) {
   std::istringstream in{std::string(words)};
@@ -127,16 +140,19 @@ std::string own_complaint(const Room& room, std::string_view name) {
 }
 
 /// The same for an outside header.
-std::string library_complaint(const Room& room, std::string_view name) {
+std::string library_complaint(const Room& room, std::string_view path, std::string_view name) {
+  for (const char* system : kSystem) {
+    if (!name.starts_with(system) || path.starts_with(kSystemFolder)) continue;
+    return "is a header of the operating system: put what needs it into src/base/system/";
+  }
   for (const Library& library : kLibraries) {
     if (!name.starts_with(library.header)) continue;
     if (library.room.empty() || library.room == room.name) return {};
     return "belongs to the room " + std::string(library.room) + " alone";
   }
   if (name.find_first_of("./") == std::string_view::npos) return {};
-  for (const char* system : kSystem) {
-    if (name.starts_with(system)) return {};
-  }
+  const auto known = [name](const char* header) { return name.starts_with(header); };
+  if (std::ranges::any_of(kSystem, known) || std::ranges::any_of(kCompiler, known)) return {};
   return "is of no known library: give it a room in tests/architecture/source_rules.cpp";
 }
 
@@ -159,10 +175,29 @@ std::vector<std::string> include_complaints(std::string_view path, std::string_v
     const Include include = include_of(line);
     if (include.delimiter == 0) continue;
     const bool own = include.delimiter == '"';
-    const std::string why = own ? own_complaint(*room, include.name) : library_complaint(*room, include.name);
+    const std::string why = own ? own_complaint(*room, include.name) : library_complaint(*room, path, include.name);
     if (!why.empty()) {
       complaints.push_back(std::string(path) + ":" + std::to_string(number) + ": '" + std::string(include.name) + "' " +
                            why);
+    }
+  }
+  return complaints;
+}
+
+std::vector<std::string> system_complaints(std::string_view path, std::string_view text) {
+  std::vector<std::string> complaints;
+  if (path.starts_with(kSystemFolder)) return complaints;
+  std::istringstream lines{std::string(text)};
+  std::string line;
+  for (int number = 1; std::getline(lines, line); ++number) {
+    const std::string_view code = std::string_view(line).substr(0, line.find("//"));
+    for (const std::string_view call : kSystemCalls) {
+      const std::size_t at = code.find(call);
+      if (at == std::string_view::npos) continue;
+      // a longer name of our own
+      if (at > 0 && (std::isalnum(static_cast<unsigned char>(code[at - 1])) != 0 || code[at - 1] == '_')) continue;
+      complaints.push_back(std::string(path) + ":" + std::to_string(number) + ": '" + std::string(call) +
+                           "' is the operating system's: call it in src/base/system/");
     }
   }
   return complaints;

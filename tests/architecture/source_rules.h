@@ -11,6 +11,9 @@ namespace limber::rules {
 /// Every complaint about the includes of one file; empty: none. `path` is seen from the root: "src/sim/world.cpp".
 std::vector<std::string> include_complaints(std::string_view path, std::string_view text);
 
+/// Complaints about calls, types and files of the operating system outside src/base/system/; comments may name them.
+std::vector<std::string> system_complaints(std::string_view path, std::string_view text);
+
 /// Complaints about a file's first line and its length.
 std::vector<std::string> shape_complaints(std::string_view path, std::string_view text);
 

@@ -21,6 +21,9 @@ std::string host_name();
 /// The kernel and the processor: "Linux x86_64".
 std::string machine_name();
 
+/// The processor's model; empty where the system does not name it.
+std::string processor_name();
+
 /// Bytes that the program holds on its heap; 0 where the system does not count them.
 double heap_bytes();
 

@@ -1,7 +1,9 @@
-// POSIX counts no heap.
+// POSIX counts no heap and names no processor.
 #include "base/system/process.h"
 
 namespace limber::system {
+
+std::string processor_name() { return {}; }
 
 double heap_bytes() { return 0; }
 

@@ -1,0 +1,24 @@
+// The heap as glibc counts it, and the kernel's description of the processor.
+#include <malloc.h>
+
+#include <fstream>
+
+#include "base/system/process.h"
+
+namespace limber::system {
+
+std::string processor_name() {
+  std::ifstream info("/proc/cpuinfo");
+  for (std::string line; std::getline(info, line);) {
+    const std::size_t colon = line.find(": ");
+    if (line.starts_with("model name") && colon != std::string::npos) return line.substr(colon + 2);
+  }
+  return {};
+}
+
+double heap_bytes() {
+  const struct mallinfo2 info = mallinfo2();
+  return static_cast<double>(info.uordblks) + static_cast<double>(info.hblkhd);
+}
+
+}  // namespace limber::system
