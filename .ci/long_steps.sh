@@ -74,5 +74,3 @@ long_crash() { tests_at_length 'LongCrash.*'; }
 long_takes() { tests_at_length 'LongTake.*'; }
 # --long math: the math functions against MPFR, ten million arguments of each and every float
 long_math() { tests_at_length 'LongMath*'; }
-# --long scripts: the scripts of tests/long, such as the Debian package in an empty system
-long_scripts() { scripts tests/long; }

@@ -150,7 +150,7 @@ const std::vector<BenchScene>& bench_scenes() {
 
 std::string bench_scene_list() {
   std::string list;
-  for (const BenchScene& scene : bench_scenes()) list += (list.empty() ? "" : ", ") + std::string(scene.name);
+  for (const BenchScene& scene : bench_scenes()) list += (list.empty() ? "" : ",") + std::string(scene.name);
   return list;
 }
 

@@ -24,7 +24,7 @@ struct BenchScene {
 };
 const std::vector<BenchScene>& bench_scenes();
 
-/// "arms-1, arms-16 …", for help.
+/// "arms-1,arms-16,…", for help.
 std::string bench_scene_list();
 
 /// Prints each scene's figures to stdout as they come (with `json`: one object at the end). Returns the exit code: 2

@@ -13,6 +13,8 @@
 
 #include "app/annotate.h"
 #include "app/bench.h"
+#include "app/command_info.h"
+#include "app/completion.h"
 #include "app/console.h"
 #include "app/describe.h"
 #include "app/describe_page.h"
@@ -20,6 +22,7 @@
 #include "app/exit_code.h"
 #include "app/export.h"
 #include "app/inspect.h"
+#include "app/man_page.h"
 #include "app/monitor.h"
 #include "app/new.h"
 #include "app/paths.h"
@@ -36,9 +39,9 @@ namespace limber {
 
 namespace {
 
-constexpr std::array<std::string_view, 13> kCommands = {"play",    "console",  "monitor",  "send",  "new",
-                                                        "inspect", "describe", "annotate", "bench", "preset",
-                                                        "take",    "export",   "doctor"};
+constexpr std::array<std::string_view, 15> kCommands = {"play",    "console",  "monitor",  "send",       "new",
+                                                        "inspect", "describe", "annotate", "bench",      "preset",
+                                                        "take",    "export",   "doctor",   "completion", "man"};
 
 constexpr const char* kAbout =
     "Limber: a live simulator of actuated, articulated bodies, scripted in Lua, played over OSC.\n\n"
@@ -185,6 +188,7 @@ struct CommandLine {
   TakeCommand take;
   ExportCommand exported;
   DoctorCommand doctor;
+  std::string shell;  // completion
   bool json = false;
   bool markdown = false;
   std::vector<std::string> package_paths;
@@ -209,8 +213,9 @@ void add_describe(CLI::App& app, CommandLine& line) {
 }
 
 void add_bench(CLI::App& app, CommandLine& line) {
-  CLI::App* bench = app.add_subcommand("bench", "how fast it is here; scenes: " + bench_scene_list());
-  bench->add_option("scene", line.bench.scenes, "which ones; left out: all")->type_name("SCENE");
+  CLI::App* bench = app.add_subcommand("bench", "how fast it is here");
+  bench->add_option("scene", line.bench.scenes, "which ones; left out: all")
+      ->type_name("SCENE:{" + bench_scene_list() + "}");
   bench->add_flag("--compare-raw", line.bench.compare_raw, "beside a bare Bullet loop, interleaved, with the ratio");
   bench->add_flag("--json", line.bench.json, "for machines");
   bench->add_option("--ticks", line.bench.ticks, "ticks a round; left out: chosen for each scene")
@@ -223,7 +228,7 @@ void add_console(CLI::App& app, ConsoleCommand& command) {
   console->footer(
       "At a terminal: Tab completes, the arrows find what was typed before, Ctrl+D leaves.\n"
       "  limber console -e 'sim.time'                 one value\n"
-      "  echo 'sim.gravity = vec3()' | limber console lines of a pipe; exit code 1 when any had an error");
+      "  echo 'sim.gravity = vec3()' | limber console  lines of a pipe; exit code 1 when any had an error");
   console->add_option("pid", command.pid, "which program, when several play")->type_name("PID");
   console->add_option("-e,--evaluate", command.expression, "evaluate this and end")->type_name("LUA");
 }
@@ -362,14 +367,23 @@ std::string usage_text(const CLI::App& app, const CLI::ParseError& error) {
   return fmt::format("{}; {}", printable(error.what()), help);
 }
 
-}  // namespace
+void add_shell_files(CLI::App& app, CommandLine& line) {
+  CLI::App* completion = app.add_subcommand("completion", "prints the script that completes limber in a shell");
+  completion->footer(
+      "  source <(limber completion bash)             in ~/.bashrc\n"
+      "  limber completion zsh >~/.zfunc/_limber      a folder of fpath\n"
+      "Debian's package installs both.");
+  completion->add_option("shell", line.shell, "the shell")
+      ->type_name("SHELL")
+      ->required()
+      ->check(CLI::IsMember({"bash", "zsh"}));
+  app.add_subcommand("man", "prints the manual page")->footer("  limber man | man -l -                        read it");
+}
 
-int run_command_line(int argc, char** argv) {
-  CLI::App app{kAbout, "limber"};
+void add_commands(CLI::App& app, CommandLine& line) {
   app.footer(kExitCodes);
   app.set_version_flag("--version", fmt::format("limber {} ({})", version(), commit()));
   app.require_subcommand(1);
-  CommandLine line;
   add_play(app, line.play);
   add_inspect(app, line);
   add_describe(app, line);
@@ -384,7 +398,23 @@ int run_command_line(int argc, char** argv) {
   CLI::App* annotate = app.add_subcommand("annotate", "definitions of all that scripts see, for editors (LuaCATS)");
   annotate->add_option("file", line.definitions, "where they go; left out: stdout")->type_name("FILE");
   add_doctor(app, line.doctor);
+  add_shell_files(app, line);
+}
 
+int print_shell_file(const CLI::App& app, const std::string& command, const std::string& shell) {
+  const CommandInfo program = command_info(app);
+  fmt::print("{}", command == "man" ? man_page(program)
+                   : shell == "zsh" ? zsh_completion(program)
+                                    : bash_completion(program));
+  return 0;
+}
+
+}  // namespace
+
+int run_command_line(int argc, char** argv) {
+  CLI::App app{kAbout, "limber"};
+  CommandLine line;
+  add_commands(app, line);
   if (const auto mistyped = mistyped_command(argc, argv)) {
     fmt::print(stderr, "limber: {}\n", *mistyped);
     return kUsage;
@@ -415,6 +445,7 @@ int run_command_line(int argc, char** argv) {
   if (command == "annotate") return annotate_command(line.definitions);
   if (command == "bench") return bench_command(line.bench);
   if (command == "doctor") return doctor_command(line.doctor);
+  if (command == "completion" || command == "man") return print_shell_file(app, command, line.shell);
   return play_command(line.play);
 }
 

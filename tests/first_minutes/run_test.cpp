@@ -32,8 +32,8 @@ class Machine {
     std::string pattern = (fs::temp_directory_path() / "limber_run_XXXXXX").string();
     root_ = ::mkdtemp(pattern.data());
     fs::create_directories(root_ / "bin");
-    fs::create_directories(root_ / "tree/.ci");
-    for (const char* file : {"run", ".ci/lib.sh", ".ci/uninstall.sh", ".ci/packages"}) {
+    fs::create_directories(root_ / "tree/.ci/package");
+    for (const char* file : {"run", ".ci/lib.sh", ".ci/uninstall.sh", ".ci/packages", ".ci/package/package.sh"}) {
       fs::copy_file(fs::path(LIMBER_SOURCE_DIR) / file, root_ / "tree" / file);
     }
     for (const char* real : {"bash", "env", "dirname", "cut", "grep", "awk", "sed", "tee", "mktemp", "rm", "mkdir",
@@ -143,6 +143,35 @@ TEST(Run, UninstallTakesBackWhatItMadeAndBrought) {
   EXPECT_FALSE(machine.has("home/.config/limber"));
   EXPECT_TRUE(machine.has("home/.config/others"));
   EXPECT_TRUE(machine.has("tree/run"));
+}
+
+TEST(Run, PackageNeedsTheToolThatFindsTheDependencies) {
+  const Machine machine;
+  machine.program("dpkg-deb", "echo dpkg-deb \"$@\" >>\"$CALLS\"");
+  const Answer answer = machine.run("--package");
+  EXPECT_EQ(answer.code, 3) << answer.text;
+  EXPECT_NE(answer.text.find("dpkg-shlibdeps not found, so no package can be built."), std::string::npos)
+      << answer.text;
+  EXPECT_NE(answer.text.find("cure: apt-get install dpkg-dev\n"), std::string::npos) << answer.text;
+  EXPECT_EQ(answer.calls.find("dpkg-deb"), std::string::npos) << answer.calls;
+  EXPECT_EQ(answer.text.find("limber play"), std::string::npos) << "it must not play";
+}
+
+TEST(Run, PackageInstallsItsToolsAsRoot) {
+  const Machine machine;
+  machine.program("dpkg-query",
+                  "shift 2; for p in \"$@\"; do case $p in dpkg-dev) ;; *) echo \"ii $p \" ;; esac; done");
+  EXPECT_NE(machine.run("--package").calls.find(" dpkg-dev\n"), std::string::npos);
+  EXPECT_EQ(machine.run("--build-only").calls.find("dpkg-dev"), std::string::npos) << "a build needs none";
+}
+
+TEST(Run, TarballIsBuiltOnTheOldestReleaseAlone) {
+  const Machine machine;
+  machine.write("os-release", "ID=debian\nVERSION_ID=13\nPRETTY_NAME='Debian GNU/Linux 13'\n");
+  const Answer answer = machine.run("--tarball");
+  EXPECT_EQ(answer.code, 3) << answer.text;
+  EXPECT_NE(answer.text.find("would not run on Debian 12"), std::string::npos) << answer.text;
+  EXPECT_NE(answer.text.find("cure: build it on Debian 12"), std::string::npos) << answer.text;
 }
 
 TEST(Run, TriesOnForeignSystemsAndSaysSo) {

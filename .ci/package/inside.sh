@@ -1,0 +1,99 @@
+#!/bin/bash
+# Tries the packages in a bare Debian: called in the root by `./check --long package`, in a folder with
+# limber_*.deb, older.deb, limber-*.tar.gz, expected (the hash of the run below) and zsh_completion.
+# Prints "ok NAME" or "FAILED NAME" with the end of the output for each check.
+cd "$(dirname "$0")" || exit 3
+play='play --headless --fast --ticks 120 --hash --seed 3'
+deb=$(echo ./limber_*.deb)
+export HOME=/home/player XDG_RUNTIME_DIR=/run/player LC_ALL=C.UTF-8
+unset DISPLAY WAYLAND_DISPLAY
+mkdir -p "$HOME" "$XDG_RUNTIME_DIR" && chmod 700 "$XDG_RUNTIME_DIR"
+
+# check NAME COMMAND...
+check() {
+  local name=$1
+  shift
+  if "$@" >log 2>&1; then
+    echo "ok $name"
+  else
+    echo "FAILED $name"
+    tail -n 25 log | sed 's/^/    /'
+  fi
+}
+
+install_debian() { apt-get install -y -q --no-install-recommends "$@"; }
+hash_is_expected() { [ "$("$@" $play 2>play.err | tail -n 1)" = "$(cat expected)" ] || { cat play.err expected; "$@" $play; false; }; }
+is_clean() { "$@" 2>&1 | tee clean.out; [ ! -s clean.out ]; }
+no_missing_library() { ! ldd "$1" | grep 'not found'; }
+
+# a still, by software: a picture, not one color
+draws() {
+  rm -f still.png
+  "$@" play --screenshot still.png --at 1 --size 640x360 && [ "$(stat -c %s still.png)" -gt 20000 ]
+}
+# plays in a window for two simulated seconds; another home, since the window's settings are saved at the end
+shows_a_window() { HOME=/home/other xvfb-run -a -s '-screen 0 1280x800x24' "$@" play --duration 2 --osc-in off --osc-out off --query off --strict; }
+
+# ---- the archive, in a system that has no other packages
+tar -xzf limber-*.tar.gz
+tarball=$(echo "$PWD"/limber-*/bin/limber)
+check tarball_finds_its_libraries no_missing_library "$tarball"
+check tarball_plays hash_is_expected "$tarball"
+check tarball_inspects "$tarball" inspect "${tarball%/bin/limber}/share/limber/urdf/arm17.urdf" --json
+mkdir moved && mv limber-*/ "moved/with space"
+tarball=$PWD/moved/with\ space/bin/limber
+check tarball_plays_where_it_was_moved hash_is_expected "$tarball"
+
+# ---- an older package, a home with shows and settings, then this package
+apt-get update -qq
+check installs_older install_debian ./older.deb
+check older_has_its_file test -e /usr/share/limber/scripts/older.lua
+(cd "$HOME" && limber new show my_show && mkdir -p .config/limber &&
+  echo '{"text_size": 1.5, "favourites": ["/physics/sim/gravity"]}' >.config/limber/panel.json &&
+  cd my_show && limber scripts/main.lua --headless --fast --ticks 60 --record evening.take &&
+  mkdir -p "$HOME/.local/state/limber" &&
+  echo 'sim.gravity' >"$HOME/.local/state/limber/console_history") >home.log 2>&1
+(cd "$HOME" && find . -type f -print0 | sort -z | xargs -0 md5sum) >home.md5
+home_is_kept() { (cd "$HOME" && md5sum --quiet -c -) <home.md5 && [ "$(cd "$HOME" && find . -type f | wc -l)" = "$(wc -l <home.md5)" ]; }
+has_a_show() { cat home.log && grep -q evening.take home.md5 && grep -q panel.json home.md5 && grep -q console_history home.md5; }
+check home_has_a_show_and_settings has_a_show
+check upgrades install_debian "$deb"
+check upgrade_removes_what_is_gone test ! -e /usr/share/limber/scripts/older.lua
+check upgrade_keeps_the_home home_is_kept
+check finds_its_libraries no_missing_library /usr/bin/limber
+check plays hash_is_expected limber
+check replays_the_take limber --replay "$HOME/my_show/evening.take" --headless --fast --strict
+check draws_a_still draws limber
+check version_is_the_packages test "$(limber --version | cut -d' ' -f2)" = "$(dpkg-query -W -f '${Version}' limber | cut -d- -f1)"
+
+# ---- what belongs to desktops, shells and readers
+check installs_tools install_debian lintian desktop-file-utils appstream man-db groff bash-completion zsh xvfb xauth \
+  libgl1-mesa-dri
+check lintian lintian --allow-root --fail-on error,warning "$deb"
+check desktop_file is_clean desktop-file-validate /usr/share/applications/limber.desktop
+check appstream appstreamcli validate --no-net --explain /usr/share/metainfo/org.limber.limber.metainfo.xml
+check man_page_renders is_clean sh -c 'man --warnings -E UTF-8 -l -Tutf8 -Z /usr/share/man/man1/limber.1.gz >man.out'
+check man_finds_it sh -c 'man -w limber && man limber | grep -q "live simulator"'
+check md5sums dpkg --verify limber
+completes_in_bash() {
+  # the words of _comp_load: bash-completion 2.12 and newer
+  bash --norc -c '. /usr/share/bash-completion/bash_completion
+    _comp_load limber 2>/dev/null || _completion_loader limber
+    complete -p limber || exit 1
+    COMP_WORDS=(limber export --format g) COMP_CWORD=3; _limber; [ "${COMPREPLY[*]}" = gltf ]'
+}
+check completes_in_bash completes_in_bash
+check completes_in_zsh timeout 120 zsh -f ./zsh_completion
+check window shows_a_window limber
+check tarball_draws_a_still draws "$tarball"
+check tarball_window shows_a_window "$tarball"
+
+# ---- removal, and purging
+removed() { ! ls -d /usr/bin/limber /usr/share/limber /usr/share/doc/limber 2>/dev/null | grep .; }
+check removes apt-get remove -y -q limber
+check removal_leaves_nothing removed
+check removal_keeps_the_home home_is_kept
+check installs_again install_debian "$deb"
+check purges apt-get purge -y -q limber
+check purge_leaves_nothing removed
+check purge_keeps_the_home home_is_kept

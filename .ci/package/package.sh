@@ -1,0 +1,214 @@
+# shellcheck shell=bash disable=SC2154,SC2086,SC2016
+# ./run --package and ./run --tarball: a Debian package, and an archive that runs without installing, of build/limber.
+# Sourced by bash in the root, after a build.
+
+package_out=build/package
+package_maintainer='Limber contributors <limber@example.org>'
+
+# the version, as CMakeLists.txt declares it
+package_version() { sed -n 's/^project(limber VERSION \([0-9.]*\).*/\1/p' CMakeLists.txt; }
+
+# the field of the system's description: os_field VERSION_ID
+os_field() { (. "${LIMBER_OS_RELEASE:-/etc/os-release}" 2>/dev/null && printf '%s' "${!1-}"); }
+
+# the release in the package's version: deb12, deb13, debsid; ubuntu24.04
+release_tag() {
+  local id number
+  id=$(os_field ID)
+  number=$(os_field VERSION_ID)
+  printf '%s' "${id/debian/deb}${number:-$(os_field VERSION_CODENAME)}"
+}
+
+# when the sources were committed, in seconds; packages of the same sources are the same
+source_time() {
+  local time=${SOURCE_DATE_EPOCH-}
+  [ -n "$time" ] || time=$(git log -1 --format=%ct 2>/dev/null) ||
+    time=$(sed -n 's/^time: \([0-9]*\)$/\1/p' .git_archival.txt 2>/dev/null)
+  printf '%s' "${time:-$(date -r CHANGELOG.md +%s)}"
+}
+
+# packages whose code the compiler puts into the program, since they are headers or static libraries
+compiled_in='libimgui-dev libcli11-dev libglm-dev nlohmann-json3-dev libstb-dev libboost-dev libtinygltf-dev
+  libfmt-dev libspdlog-dev'
+
+# install_licences FOLDER PACKAGE...: their license texts
+install_licences() {
+  local folder=$1 package
+  shift
+  mkdir -p "$folder"
+  for package; do
+    [ -e "$folder/$package" ] || cp "/usr/share/doc/$package/copyright" "$folder/$package" ||
+      refuse 3 "the license of $package was not found." "apt-get install --reinstall $package"
+  done
+}
+
+# need_program PROGRAM PACKAGE: fails clearly when it is missing
+need_program() {
+  command -v "$1" >/dev/null || refuse 3 "$1 not found, so no package can be built." "apt-get install $2"
+}
+
+# install_tree PREFIX: what `cmake --install` installs, stripped, with icons in the usual sizes
+install_tree() {
+  local prefix=$1 size folder
+  need_program rsvg-convert librsvg2-bin
+  umask 022
+  cmake --install build --prefix "$prefix" --strip >"$package_out/install.log" ||
+    refuse 3 "installing into $prefix failed (whole output: $package_out/install.log)." "remove build/package and try again."
+  for size in 16 24 32 48 64 128 256; do
+    folder=$prefix/share/icons/hicolor/${size}x$size/apps
+    mkdir -p "$folder"
+    rsvg-convert -w $size -h $size src/app/desktop/limber.svg -o "$folder/limber.png" || exit 3
+  done
+  install_licences "$prefix/share/doc/limber/licences" $compiled_in
+}
+
+# install_site FOLDER: the documentation as pages that a browser shows without a network
+install_site() {
+  local folder=$1
+  need_program mkdocs mkdocs
+  mkdocs build --clean -f mkdocs.yml -d "$PWD/$folder" >"$package_out/site.log" 2>&1 ||
+    refuse 3 "mkdocs could not build the documentation (whole output: $package_out/site.log)." "mend what it says there."
+  # what makes the pictures, and what mkdocs writes for servers
+  rm -rf "$folder"/{media,plots}/{make,*.lua} "$folder"/{sitemap.xml,sitemap.xml.gz,404.html}
+}
+
+# the newest section of CHANGELOG.md as an entry of a Debian changelog
+debian_changelog() {
+  printf 'limber (%s) %s; urgency=medium\n' "$1" "$(os_field VERSION_CODENAME)"
+  awk '
+    function flush_item(   line, i, n, words) {
+      n = split(item, words, /[ \t]+/)
+      if (!n) return
+      line = "  *"
+      for (i = 1; i <= n; ++i) {
+        if (words[i] == "") continue
+        if (length(line) + 1 + length(words[i]) > 79) { print line; line = "   " }
+        line = line " " words[i]
+      }
+      print line
+      item = ""
+    }
+    /^## / { if (seen++) exit; next }
+    !seen { next }
+    /^### / { flush_item(); sub(/^### /, ""); printf "\n  [ %s ]\n", $0; next }
+    /^- / { flush_item(); item = substr($0, 3); next }
+    /^  / && item != "" { item = item " " $0; next }
+    { flush_item() }
+    END { flush_item() }' CHANGELOG.md
+  printf '\n -- %s  %s\n' "$package_maintainer" "$(LC_ALL=C date -R -u -d "@$(source_time)")"
+}
+
+# the dependencies that the program's libraries ask for, as dpkg-shlibdeps finds them
+library_dependencies() {
+  local depends
+  mkdir -p "$package_out/debian"
+  printf 'Source: limber\n\nPackage: limber\nArchitecture: any\n' >"$package_out/debian/control"
+  depends=$(cd "$package_out" && dpkg-shlibdeps -O stage/usr/bin/limber 2>shlibdeps.log | sed -n 's/^shlibs:Depends=//p')
+  case $depends in
+    *libc6*) printf '%s' "$depends" ;;
+    *) refuse 3 "dpkg-shlibdeps found no dependencies (its messages: $package_out/shlibdeps.log)." \
+      "install the libraries from Debian's packages and build again." ;;
+  esac
+}
+
+debian_control() {
+  cat <<TEXT
+Package: limber
+Version: $1
+Architecture: $(dpkg --print-architecture)
+Maintainer: $package_maintainer
+Installed-Size: $(du -sk --apparent-size "$2/usr" | cut -f1)
+Depends: $3, libegl1, libgl1
+Recommends: libgl1-mesa-dri, fonts-inter, fonts-jetbrains-mono
+Suggests: ffmpeg, avahi-utils, liblo-tools
+Section: graphics
+Priority: optional
+Description: live simulator of actuated, articulated bodies
+ Limber simulates bodies that are built from URDF files or in Lua, moved by
+ motors and behaviors, and played over OSC. A scene is a Lua script: a saved
+ change is in force while the show plays on.
+ .
+ It has a direct solver for articulated bodies, a panel, a remote panel for
+ browsers (OSCQuery), presets and morphs, rewind, takes that are replayed to
+ the bit, stills and films, and exports motion as CSV, BVH and glTF.
+TEXT
+}
+
+# what Debian's policy wants of the documentation: compressed, with the license in `copyright`
+debian_documents() {
+  local doc=$1/usr/share/doc/limber version=$2
+  rm "$doc/LICENSE" "$doc/README.md" "$doc/licences.md"
+  mv "$doc/CHANGELOG.md" "$doc/changelog"
+  debian_changelog "$version" >"$doc/changelog.Debian"
+  cp .ci/package/copyright "$doc/copyright"
+  install_site "${doc#"$PWD"/}/html"
+  # the page of licenses leads to the license, which is in this file here
+  sed -i 's|"../LICENSE"|"../copyright"|g' "$doc/html/licences.html"
+  gzip -9n "$doc/changelog" "$doc/changelog.Debian" "$1/usr/share/man/man1/limber.1"
+  mkdir -p "$1/usr/share/doc-base"
+  cp .ci/package/doc-base "$1/usr/share/doc-base/limber.limber"
+  # where Debian's zsh looks
+  mkdir -p "$1/usr/share/zsh/vendor-completions"
+  mv "$1/usr/share/zsh/site-functions/_limber" "$1/usr/share/zsh/vendor-completions/"
+  rmdir "$1/usr/share/zsh/site-functions"
+}
+
+make_package() {
+  local stage=$package_out/stage version depends file
+  for file in dpkg-deb dpkg-shlibdeps; do need_program $file dpkg-dev; done
+  version=$(package_version)-1~$(release_tag)
+  rm -rf "$stage" && mkdir -p "$stage/DEBIAN"
+  install_tree "$stage/usr"
+  debian_documents "$stage" "$version"
+  depends=$(library_dependencies) || exit
+  debian_control "$version" "$stage" "$depends" >"$stage/DEBIAN/control"
+  (cd "$stage" && find usr -type f -print0 | LC_ALL=C sort -z | xargs -0 md5sum >DEBIAN/md5sums)
+  find "$stage" -exec touch -h -d "@$(source_time)" {} +
+  file=$package_out/limber_${version}_$(dpkg --print-architecture).deb
+  SOURCE_DATE_EPOCH=$(source_time) dpkg-deb --root-owner-group -Zxz --build "$stage" "$file" >/dev/null ||
+    refuse 3 "dpkg-deb could not build $file." "mend what it says above and try again."
+  say "built: $file"
+  say "to install it: apt install ./$file"
+}
+
+# libraries that belong to the system: the C and C++ library, and what the drivers of the graphics card bring
+system_library() {
+  case $1 in
+    ld-linux* | libc.so.* | libm.so.* | libdl.so.* | libpthread.so.* | librt.so.* | libresolv.so.* | libutil.so.* | \
+      libstdc++.so.* | libgcc_s.so.* | libGL.so.* | libEGL.so.* | libGLX.so.* | libOpenGL.so.* | libGLdispatch.so.* | \
+      libdrm.so.* | libgbm.so.* | libwayland-*) return 0 ;;
+  esac
+  return 1
+}
+
+# the libraries that the program loads, and their licenses
+bundle_libraries() {
+  local tree=$1 name path package
+  mkdir -p "$tree/lib"
+  while read -r name path; do
+    system_library "$name" && continue
+    cp -L "$path" "$tree/lib/$name" && strip --strip-unneeded "$tree/lib/$name" &&
+      patchelf --force-rpath --set-rpath '$ORIGIN' "$tree/lib/$name" || exit 3
+    package=$(dpkg-query -S "*/$(basename "$(realpath "$path")")" 2>/dev/null | sed 's/:.*//;q')
+    [ -n "$package" ] || refuse 3 "$path belongs to no package, so its license is unknown." "build with Debian's libraries."
+    install_licences "$tree/share/doc/limber/licences" "$package"
+  done < <(LC_ALL=C ldd "$tree/bin/limber" | awk '$2 == "=>" && $3 ~ /^\// { print $1, $3 }')
+  patchelf --force-rpath --set-rpath '$ORIGIN/../lib' "$tree/bin/limber" || exit 3
+}
+
+make_tarball() {
+  local name tree
+  [ "$(os_field ID)$(os_field VERSION_ID)" = debian12 ] || refuse 3 \
+    "a tarball built on $(system_name) would not run on Debian 12, whose C library is older." \
+    "build it on Debian 12: .ci/chroot bookworm ./run --tarball"
+  need_program patchelf patchelf
+  name=limber-$(package_version)-linux-$(uname -m)
+  tree=$package_out/$name
+  rm -rf "$tree" && mkdir -p "$tree"
+  install_tree "$tree"
+  bundle_libraries "$tree"
+  install_site "$tree/share/doc/limber/html"
+  tar -C "$package_out" --sort=name --owner=0 --group=0 --numeric-owner --mtime="@$(source_time)" -czf \
+    "$package_out/$name.tar.gz" "$name" || refuse 3 "tar could not write $package_out/$name.tar.gz." "free some disk space."
+  say "built: $package_out/$name.tar.gz"
+}

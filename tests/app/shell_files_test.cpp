@@ -1,0 +1,199 @@
+// The manual page and the completions: each command and option of the help is in them, and completion works in bash.
+#include <cctype>
+#include <regex>
+#include <sstream>
+
+#include "app/program.h"
+
+namespace limber::app_test {
+namespace {
+
+/// A command with the options that its help lists.
+struct Helped {
+  std::string path;  ///< "limber take info"; "limber" for the program itself.
+  std::vector<std::string> options;
+};
+
+/// The names at the start of a line of help: "  -e,--evaluate LUA   ...".
+std::vector<std::string> option_names(const std::string& line) {
+  static const std::regex name(R"(^[ ,]*(-[a-zA-Z]|--[a-z][a-z-]*)(?=[ ,]|$))");
+  std::vector<std::string> names;
+  std::smatch match;
+  std::string rest = line;
+  while (std::regex_search(rest, match, name)) {
+    names.push_back(match[1]);
+    rest = match.suffix();
+  }
+  return names;
+}
+
+/// Reads the help of a command and of the commands within it.
+void read_help(const std::vector<std::string>& words, std::vector<Helped>& found) {
+  std::vector<std::string> args = words;
+  args.emplace_back("--help");
+  std::istringstream help(run(args).out);
+  Helped command{"limber", {}};
+  for (const std::string& word : words) command.path += " " + word;
+  std::vector<std::string> inner;
+  bool in_commands = false;
+  for (std::string line; std::getline(help, line);) {
+    std::string lower;
+    for (const char c : line) lower += static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+    if (!line.starts_with(' ')) in_commands = lower == "subcommands:";
+    if (in_commands && line.starts_with("  ") && line.size() > 2 && line[2] != ' ')
+      inner.push_back(line.substr(2, line.find(' ', 2) - 2));
+    for (const std::string& name : option_names(line)) command.options.push_back(name);
+  }
+  found.push_back(command);
+  for (const std::string& name : inner) {
+    args = words;
+    args.push_back(name);
+    read_help(args, found);
+  }
+}
+
+const std::vector<Helped>& helped() {
+  static const std::vector<Helped> all = [] {
+    std::vector<Helped> found;
+    read_help({}, found);
+    return found;
+  }();
+  return all;
+}
+
+std::string roff(const std::string& text) { return std::regex_replace(text, std::regex("-"), "\\-"); }
+
+/// The part of a text between a mark and the next line that begins with `end`.
+std::string section(const std::string& text, const std::string& mark, const std::string& end) {
+  const std::size_t at = text.find(mark);
+  if (at == std::string::npos) return {};
+  return text.substr(at, text.find("\n" + end, at) - at);
+}
+
+TEST(ShellFiles, HelpIsRead) {
+  EXPECT_GE(helped().size(), 20U);
+  EXPECT_EQ(helped().front().options, (std::vector<std::string>{"-h", "--help", "--version"}));
+}
+
+TEST(ManPage, NamesEveryCommandAndOption) {
+  const Ran page = run({"man"});
+  ASSERT_EQ(page.code, 0);
+  for (const Helped& command : helped()) {
+    const bool program = command.path == "limber";
+    const std::string text =
+        program ? section(page.out, ".SH OPTIONS", ".SH") : section(page.out, ".SS \\fB" + command.path + "\\fR", ".S");
+    EXPECT_NE(text, "") << command.path;
+    for (const std::string& option : command.options) {
+      if (!program && (option == "-h" || option == "--help")) continue;
+      EXPECT_NE(text.find("\\fB" + roff(option) + "\\fR"), std::string::npos) << command.path << " " << option;
+    }
+  }
+}
+
+TEST(ManPage, HasTheValuesTheTextsAndTheExamples) {
+  const std::string page = run({"man"}).out;
+  const std::string play = section(page, ".SS \\fBlimber play\\fR", ".S");
+  EXPECT_NE(play.find(".TP\n\\fB\\-\\-fps\\fR \\fIN\\fR\n"), std::string::npos) << play;
+  EXPECT_NE(play.find("(0.001 to 1000)\n"), std::string::npos) << play;
+  EXPECT_NE(play.find("\\fB\\-\\-quality\\fR \\fIlow|medium|high\\fR\n"), std::string::npos) << play;
+  EXPECT_NE(page.find(".SS \\fBlimber send\\fR [\\fIOPTIONS\\fR] \\fIADDRESS\\fR [\\fIARGS\\fR ...]\n"),
+            std::string::npos);
+  EXPECT_NE(page.find(".TP\n\\fBlimber console \\-e \\(aqsim.time\\(aq\\fR\n"), std::string::npos);
+  EXPECT_NE(page.find("limber 0."), std::string::npos) << "the version is in the title";
+}
+
+TEST(ManPage, NoTextIsAMacro) {
+  // a line that begins with a period or an apostrophe is a request: only those that the page uses may occur
+  std::istringstream page(run({"man"}).out);
+  const std::regex known(R"(\.(\\"|TH|SH|SS|TP|PP|B|I|BR|IR|br|ad|nh)( .*)?)");
+  for (std::string line; std::getline(page, line);) {
+    EXPECT_FALSE(line.starts_with('\'')) << line;
+    EXPECT_TRUE(!line.starts_with('.') || std::regex_match(line, known)) << line;
+  }
+}
+
+/// The words that bash offers for a command line; its last word is the one at the cursor.
+std::string offered(const Folder& folder, const std::string& line) {
+  folder.file("limber.bash", run({"completion", "bash"}).out);
+  const Ran ran = Running({"bash", "--norc", "-c",
+                           ". ./limber.bash && COMP_WORDS=(" + line +
+                               ") && COMP_CWORD=$((${#COMP_WORDS[@]} - 1)) && _limber && echo \"${COMPREPLY[*]}\""},
+                          folder.path())
+                      .finish();
+  EXPECT_EQ(ran.code, 0) << line << ": " << ran.err;
+  EXPECT_EQ(ran.err, "") << line;
+  return ran.out.substr(0, ran.out.find('\n'));
+}
+
+TEST(BashCompletion, OffersEveryOptionOfEachCommand) {
+  const Folder folder;
+  for (const Helped& command : helped()) {
+    const std::string words = " " + offered(folder, command.path + " -") + " ";
+    for (const std::string& option : command.options)
+      EXPECT_NE(words.find(" " + option + " "), std::string::npos) << command.path << " " << option << ":" << words;
+  }
+}
+
+struct Offer {
+  const char* line;
+  const char* words;
+};
+
+TEST(BashCompletion, OffersWhatFits) {
+  const Folder folder;
+  for (const char* name : {"show/a.lua", "show/b.lua", "show/c.take", "show/d.urdf", "show/e.json", "show/f.txt"})
+    folder.file(name, "");
+  for (const Offer& offer : {Offer{"limber pl", "play"},
+                             {"limber preset ''", "import"},
+                             {"limber new s", "show scene"},
+                             {"limber --fas", "--fast"},
+                             {"limber --vers", "--version"},
+                             {"limber show/", "show/a.lua show/b.lua"},
+                             {"limber play show/", "show/a.lua show/b.lua"},
+                             {"limber --fast show/", "show/a.lua show/b.lua"},
+                             {"limber --seed 3 show/", "show/a.lua show/b.lua"},
+                             {"limber show/a.lua --dur", "--duration"},
+                             {"limber show/a.lua show/", ""},
+                             {"limber --replay show/", "show/c.take"},
+                             {"limber take info show/", "show/c.take"},
+                             {"limber inspect show/", "show/d.urdf"},
+                             {"limber preset import show/", "show/e.json"},
+                             {"limber preset import show/e.json show/", "show/a.lua show/b.lua"},
+                             {"limber --package-path sh", "show"},
+                             {"limber play --quality ''", "low medium high"},
+                             {"limber play --quality = m", "medium"},
+                             {"limber play --quality =", "low medium high"},
+                             {"limber --osc-in ''", "off"},
+                             {"limber --set ''", ""},
+                             {"limber export --format g", "gltf"},
+                             {"limber bench solver pan", "panel"},
+                             {"limber completion ''", "bash zsh"}}) {
+    EXPECT_EQ(offered(folder, offer.line), offer.words) << offer.line;
+  }
+}
+
+TEST(ZshCompletion, HasEveryCommandAndOption) {
+  const std::string text = run({"completion", "zsh"}).out;
+  EXPECT_TRUE(text.starts_with("#compdef limber\n")) << "zsh finds it by this line";
+  for (const Helped& command : helped()) {
+    std::string function = "_" + command.path;
+    for (char& c : function) c = c == ' ' ? '_' : c;
+    const std::string body = section(text, "\n" + function + "() {\n", "}\n");
+    EXPECT_NE(body, "") << function;
+    const bool inner = text.find("\n" + function + "_") != std::string::npos;
+    for (const std::string& option : command.options) {
+      if (inner) continue;  // its words are commands
+      const std::regex listed("['{,(*]" + option + "[=\\[,}' )]");
+      EXPECT_TRUE(std::regex_search(body, listed)) << function << " " << option << "\n" << body;
+    }
+  }
+}
+
+TEST(ShellFiles, AShellThatIsNotKnownIsRejected) {
+  const Ran ran = run({"completion", "fish"});
+  EXPECT_EQ(ran.code, 2);
+  EXPECT_NE(ran.err.find("fish"), std::string::npos) << ran.err;
+}
+
+}  // namespace
+}  // namespace limber::app_test
