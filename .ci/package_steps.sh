@@ -31,6 +31,7 @@ package_checks() {
   deb=$(built_for "$release" --package) || { fail "the package of $release was not built" "build/check/package_$release--package.log"; return; }
   rm -rf "$folder" && mkdir -p "$folder"
   cp "$deb" "$tarball" .ci/package/inside.sh .ci/package/zsh_completion "$folder/"
+  package_rows bare | cut -d' ' -f1 >"$folder/tools"
   older_package "$deb" "$folder/older.deb" && build/limber play --headless --fast --ticks 120 --hash --seed 3 \
     2>/dev/null | tail -n 1 >"$folder/expected" || { fail "the files for the checks in $release could not be made"; return; }
   # everything that a check says is in the log; a root that ends early fails

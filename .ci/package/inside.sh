@@ -1,7 +1,9 @@
 #!/bin/bash
 # Tries the packages in a bare Debian: called in the root by `./check --long package`, in a folder with
-# limber_*.deb, older.deb, limber-*.tar.gz, expected (the hash of the run below) and zsh_completion.
+# limber_*.deb, older.deb, limber-*.tar.gz, expected (the hash of the run below), tools (packages that the checks need)
+# and zsh_completion.
 # Prints "ok NAME" or "FAILED NAME" with the end of the output for each check.
+# shellcheck disable=SC2046,SC2086
 cd "$(dirname "$0")" || exit 3
 play='play --headless --fast --ticks 120 --hash --seed 3'
 deb=$(echo ./limber_*.deb)
@@ -67,8 +69,7 @@ check draws_a_still draws limber
 check version_is_the_packages test "$(limber --version | cut -d' ' -f2)" = "$(dpkg-query -W -f '${Version}' limber | cut -d- -f1)"
 
 # ---- what belongs to desktops, shells and readers
-check installs_tools install_debian lintian desktop-file-utils appstream man-db groff bash-completion zsh xvfb xauth \
-  libgl1-mesa-dri
+check installs_tools install_debian $(cat tools)
 check lintian lintian --allow-root --fail-on error,warning "$deb"
 check desktop_file is_clean desktop-file-validate /usr/share/applications/limber.desktop
 check appstream appstreamcli validate --no-net --explain /usr/share/metainfo/org.limber.limber.metainfo.xml
