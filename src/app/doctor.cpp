@@ -16,6 +16,7 @@
 #include "app/query_doors.h"
 #include "app/window.h"
 #include "base/build_info.h"
+#include "base/fixed_math.h"
 #include "base/system/file.h"
 #include "base/system/process.h"
 #include "base/system/udp_socket.h"
@@ -103,6 +104,12 @@ int doctor_command(const DoctorCommand& command) {
   finding("ok", "limber", fmt::format("{} ({})", version(), commit()));
   finding("ok", "system",
           fmt::format("{}, {}, {} cores", system_name(), system::machine_name(), std::thread::hardware_concurrency()));
+
+  const bool exact = fixed::is_arithmetic_exact() && fixed::is_libm_replaced();
+  finding(exact ? "ok" : "no", "arithmetic",
+          exact ? "as on every other machine: a scene, a seed and its commands give the same hash"
+                : "hashes and takes of other machines do not match: the program was compiled with -ffast-math or "
+                  "-ffp-contract, or a preloaded library replaces the mathematical functions");
 
   const std::string data = data_dir();
   if (data.empty()) {

@@ -79,7 +79,7 @@ Pose pose_in(const Snapshot& snapshot, std::uint32_t part) {
 }
 
 Pose between(const Pose& a, const Pose& b, double mix) {
-  return {glm::mix(a.position, b.position, mix), glm::normalize(glm::slerp(a.rotation, b.rotation, mix))};
+  return {glm::mix(a.position, b.position, mix), slerp(a.rotation, b.rotation, mix)};
 }
 
 // parents by the first joint that leads to a part and closes no loop, and rest poses along these joints

@@ -33,6 +33,6 @@ inline Vec3 rgb_of(const Vec3& hsb) {
 }
 
 /// A channel as screens show it (0 .. 1) as light, of which twice the number is twice as much.
-inline double light_of(double shown) { return std::pow(shown, 2.2); }
+inline double light_of(double shown) { return fixed::pow(shown, 2.2); }
 
 }  // namespace limber

@@ -1,6 +1,8 @@
 // Cube root, hypotenuse, the single-precision functions and the check of the arithmetic.
 #include "base/fixed_math.h"
 
+#include <cfenv>
+
 #include "base/fixed_math_sum.h"
 
 namespace limber::fixed {
@@ -37,6 +39,8 @@ bool is_arithmetic_exact() {
   const bool rounds_to_nearest = up == 1 && down == -1 && odd == 1 + 0x1p-51;
   return !is_contracted && !flushes && rounds_to_nearest;
 }
+
+void reset_arithmetic() { std::fesetenv(FE_DFL_ENV); }
 
 // With y the root rounded to 17 bits, y^3 is exact. Multiplies y by the series of (1 + u)^(1/3), u = (x - y^3) / y^3.
 double cbrt(double x) {

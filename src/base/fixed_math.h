@@ -14,6 +14,10 @@ namespace limber::fixed {
 
 /// Checks the requirements on rounding, subnormal numbers and contraction for the calling thread.
 bool is_arithmetic_exact();
+/// Sets the calling thread to rounding to nearest and subnormal numbers, which a library may have changed.
+void reset_arithmetic();
+/// True if LuaJIT and the other libraries call these functions as sin(), powf() and so on (libm.cpp).
+bool is_libm_replaced();
 
 // Trigonometric functions, in radians. The argument reduction is exact for all doubles.
 double sin(double x);

@@ -38,14 +38,14 @@ class Random {
   /// Standard normal (Box, Muller 1958, one of the pair).
   double normal() {
     const double u = 1 - uniform();
-    return std::sqrt(-2 * std::log(u)) * std::cos(2 * kPi * uniform());
+    return std::sqrt(-2 * fixed::log(u)) * fixed::cos(2 * kPi * uniform());
   }
   /// Uniform on the unit sphere (Archimedes: z is uniform).
   Vec3 direction() {
     const double z = uniform(-1, 1);
     const double angle = uniform(0, 2 * kPi);
     const double r = std::sqrt(1 - z * z);
-    return {r * std::cos(angle), r * std::sin(angle), z};
+    return {r * fixed::cos(angle), r * fixed::sin(angle), z};
   }
 
   /// For the state hash and for takes.

@@ -2,6 +2,7 @@
 #include "base/team.h"
 
 #include "base/check.h"
+#include "base/fixed_math.h"
 #include "base/system/clock.h"
 #include "base/system/thread.h"
 
@@ -64,6 +65,7 @@ void Team::share(int pieces, Call call, void* of) {
 }
 
 void Team::help(int member) {
+#include "base/fixed_math.h"
   system::name_this_thread("limber-team");
   std::uint32_t seen = 0;
   while (!ends_) {

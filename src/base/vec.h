@@ -9,6 +9,8 @@
 #include <glm/mat3x3.hpp>
 #include <glm/vec3.hpp>
 
+#include "base/fixed_math.h"
+
 namespace limber {
 
 using Vec3 = glm::dvec3;
@@ -20,7 +22,20 @@ inline constexpr double kPi = 3.14159265358979323846;
 
 inline Quat quat_xyzw(double x, double y, double z, double w) { return Quat(w, x, y, z); }
 inline Quat quat_identity() { return Quat(1, 0, 0, 0); }
-inline Quat quat_axis(const Vec3& unit_axis, double angle) { return glm::angleAxis(angle, unit_axis); }
+inline Quat quat_axis(const Vec3& unit_axis, double angle) {
+  const fixed::SinCos half = fixed::sincos(angle / 2);
+  return Quat(half.cos, unit_axis * half.sin);
+}
+/// Spherical interpolation along the shorter arc; `amount` from 0 (a) to 1 (b). The result is a unit quaternion.
+inline Quat slerp(const Quat& a, const Quat& b, double amount) {
+  const double dot = glm::dot(a, b);
+  const double cosine = std::fabs(dot);
+  const Quat end = dot < 0 ? -b : b;
+  // Close rotations: the weights of the arc differ from those of the chord by less than a double resolves.
+  if (cosine > 1 - 1e-15) return glm::normalize(a * (1 - amount) + end * amount);
+  const double angle = fixed::acos(cosine);
+  return glm::normalize(a * fixed::sin((1 - amount) * angle) + end * fixed::sin(amount * angle));
+}
 
 /// Rotation Rz(z)·Ry(y)·Rx(x): fixed axes, roll-pitch-yaw as URDF has it, radians.
 inline Quat quat_euler(double x, double y, double z) {
@@ -31,8 +46,8 @@ inline Quat quat_euler(double x, double y, double z) {
 inline Vec3 euler_of(const Quat& q) {
   const Mat3 m = glm::mat3_cast(q);
   const double sin_y = -m[0][2];
-  const double y = std::asin(sin_y > 1 ? 1 : (sin_y < -1 ? -1 : sin_y));
-  return {std::atan2(m[1][2], m[2][2]), y, std::atan2(m[0][1], m[0][0])};
+  const double y = fixed::asin(sin_y > 1 ? 1 : (sin_y < -1 ? -1 : sin_y));
+  return {fixed::atan2(m[1][2], m[2][2]), y, fixed::atan2(m[0][1], m[0][0])};
 }
 
 /// Unit vector along v; the zero vector stays zero, so no NaN is born here.

@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include "base/fixed_math.h"
 #include "base/log.h"
 #include "base/system/clock.h"
 #include "base/text.h"
@@ -245,6 +246,7 @@ void Engine::stop() {
 }
 
 void Engine::pass(bool may_step) {
+  fixed::reset_arithmetic();
   Stopwatch watch;
   calls_.begin_tick();
   requests_.serve();

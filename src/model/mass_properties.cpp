@@ -32,8 +32,8 @@ Principal principal_of(const Mat3& tensor) {
     const double off = a[p][q];
     if (off == 0 || std::abs(off) < 1e-17 * (std::abs(a[p][p]) + std::abs(a[q][q]))) break;
     const double theta = (a[q][q] - a[p][p]) / (2 * off);
-    const double t = std::copysign(1.0, theta) / (std::abs(theta) + std::hypot(theta, 1.0));
-    const double c = 1 / std::hypot(t, 1.0);
+    const double t = std::copysign(1.0, theta) / (std::abs(theta) + fixed::hypot(theta, 1.0));
+    const double c = 1 / fixed::hypot(t, 1.0);
     Mat3 turn(1);
     turn[p][p] = turn[q][q] = c;
     turn[q][p] = t * c;

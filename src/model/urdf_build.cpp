@@ -13,8 +13,8 @@ namespace {
 
 /// Turns +z to the axis: nothing for +z, half a turn about x for -z, else any right-handed frame around it.
 Quat turn_to_axis(const Vec3& axis) {
-  if (axis.z >= 1 - 1e-15 && std::hypot(axis.x, axis.y) < 1e-12) return quat_identity();
-  if (axis.z <= -1 + 1e-15 && std::hypot(axis.x, axis.y) < 1e-12) return quat_xyzw(1, 0, 0, 0);
+  if (axis.z >= 1 - 1e-15 && fixed::hypot(axis.x, axis.y) < 1e-12) return quat_identity();
+  if (axis.z <= -1 + 1e-15 && fixed::hypot(axis.x, axis.y) < 1e-12) return quat_xyzw(1, 0, 0, 0);
   const Vec3 helper = std::abs(axis.x) < 0.7 ? Vec3(1, 0, 0) : Vec3(0, 1, 0);
   const Vec3 y = normalized(glm::cross(axis, helper));
   return glm::normalize(glm::quat_cast(Mat3(glm::cross(y, axis), y, axis)));

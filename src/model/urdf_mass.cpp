@@ -41,7 +41,7 @@ Inertial shapes_of(const UrdfLink& link) {
 
 /// A tensor of the right size when there is no shape to take one from: a ball of water.
 Mat3 ball_tensor(double mass) {
-  const double radius = std::cbrt(mass / kDensity * 3 / (4 * kPi));
+  const double radius = fixed::cbrt(mass / kDensity * 3 / (4 * kPi));
   return Mat3(0.4 * mass * radius * radius);
 }
 

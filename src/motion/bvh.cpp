@@ -235,13 +235,13 @@ class BvhWriter : public MotionWriter {
 Vec3 bvh_angles(const Quat& rotation, const Vec3& before) {
   const Mat3 m = glm::mat3_cast(rotation);  // m[column][row]
   const double sin_x = std::clamp(m[1][2], -1.0, 1.0);
-  const double x = std::asin(sin_x);
+  const double x = fixed::asin(sin_x);
   if (1 - std::abs(sin_x) < 1e-12) {
     // z and y turn about one axis: y stays, z does the rest
     const Mat3 rest = glm::mat3_cast(rotation * quat_axis({0, 1, 0}, -before.z));
-    return {nearest_turn(std::atan2(rest[0][1], rest[0][0]), before.x), nearest_turn(x, before.y), before.z};
+    return {nearest_turn(fixed::atan2(rest[0][1], rest[0][0]), before.x), nearest_turn(x, before.y), before.z};
   }
-  const Vec3 angles(std::atan2(-m[1][0], m[1][1]), x, std::atan2(-m[0][2], m[2][2]));
+  const Vec3 angles(fixed::atan2(-m[1][0], m[1][1]), x, fixed::atan2(-m[0][2], m[2][2]));
   const auto near = [&](const Vec3& a) {
     return Vec3(nearest_turn(a.x, before.x), nearest_turn(a.y, before.y), nearest_turn(a.z, before.z));
   };

@@ -18,7 +18,7 @@ double between(double a, double b, double amount) {
   return std::clamp(v, std::min(a, b), std::max(a, b));
 }
 
-Quat arc(const Quat& a, const Quat& b, double amount) { return glm::normalize(glm::slerp(a, b, amount)); }
+Quat arc(const Quat& a, const Quat& b, double amount) { return slerp(a, b, amount); }
 
 // Rx·Ry·Rz, degrees
 Quat turn_of(const double* v) {

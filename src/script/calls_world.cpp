@@ -129,6 +129,9 @@ std::int32_t random_direction(void* c, std::int32_t slot, std::int32_t generatio
 
 double noise(void*, double x, double y, double z) { return gradient_noise(x, y, z); }
 
+double min(double x, double y) { return y < x ? y : x; }
+double max(double x, double y) { return y > x ? y : x; }
+
 double clamp(double x, double lo, double hi) {
   if (x < lo) return lo;
   return x > hi ? hi : x;

@@ -30,7 +30,7 @@ void AxisGoals::set_smoothing(double time) {
 
 double AxisGoals::filtered(std::size_t axis, double target, double tick) {
   const double stage_time = kStagePart * filter_->time + kStageTicks * std::min(filter_->time, tick);
-  const double share = 1 - std::exp(-tick / stage_time);
+  const double share = 1 - fixed::exp(-tick / stage_time);
   std::array<double, kStages>& stages = filter_->stages[axis];
   double input = target;
   double farthest = 0;

@@ -19,17 +19,18 @@ struct Orbit {
 };
 
 Orbit orbit_of(const Vec3& offset) {
-  const double flat = std::hypot(offset.x, offset.y);
-  return {std::atan2(offset.y, offset.x), std::atan2(offset.z, flat), std::hypot(flat, offset.z)};
+  const double flat = fixed::hypot(offset.x, offset.y);
+  return {fixed::atan2(offset.y, offset.x), fixed::atan2(offset.z, flat), fixed::hypot(flat, offset.z)};
 }
 
 Vec3 offset_of(const Orbit& orbit) {
-  const double flat = orbit.length * std::cos(orbit.elevation);
-  return {flat * std::cos(orbit.heading), flat * std::sin(orbit.heading), orbit.length * std::sin(orbit.elevation)};
+  const double flat = orbit.length * fixed::cos(orbit.elevation);
+  return {flat * fixed::cos(orbit.heading), flat * fixed::sin(orbit.heading),
+          orbit.length * fixed::sin(orbit.elevation)};
 }
 
 // straight above or below there is no heading: it has the other's
-bool upright(const Vec3& offset) { return std::hypot(offset.x, offset.y) < 1e-9 * glm::length(offset); }
+bool upright(const Vec3& offset) { return fixed::hypot(offset.x, offset.y) < 1e-9 * glm::length(offset); }
 
 Vec3 offset_between(const Vec3& from, const Vec3& to, double share) {
   Orbit a = orbit_of(from);

@@ -27,7 +27,7 @@ const std::array<Corner, kCapCorners>& unit_circle() {
     std::array<Corner, kCapCorners> corners{};
     for (int i = 0; i < kCapCorners; ++i) {
       const double angle = 2 * kPi * i / kCapCorners;
-      corners[static_cast<std::size_t>(i)] = {to_scalar(std::cos(angle)), to_scalar(std::sin(angle))};
+      corners[static_cast<std::size_t>(i)] = {to_scalar(fixed::cos(angle)), to_scalar(fixed::sin(angle))};
     }
     return corners;
   }();

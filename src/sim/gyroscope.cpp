@@ -43,8 +43,8 @@ Vec3 gyroscopic_change(const Vec3& inertia, const Vec3& spin, double h) {
 
 // across·(r2 - r1) = -h·along·spin·r×axis with r = (r1 + r2)/2 turns r about the axis.
 Vec3 gyroscopic_change(double along, double across, const Vec3& axis, double spin, const Vec3& rest, double h) {
-  const double angle = 2 * std::atan(h * along * spin / (2 * across));
-  return rest * (std::cos(angle) - 1) + glm::cross(axis, rest) * std::sin(angle);
+  const double angle = 2 * fixed::atan(h * along * spin / (2 * across));
+  return rest * (fixed::cos(angle) - 1) + glm::cross(axis, rest) * fixed::sin(angle);
 }
 
 }  // namespace limber

@@ -162,7 +162,7 @@ btScalar IslandSolver::sweep_rolling() {
     if (row.m_overrideNumSolverIterations != friction_along) continue;
     btSolverConstraint& across = rows[i + 1];
     const btScalar second = across.m_appliedImpulse + free_impulse(across);
-    const btScalar length = std::hypot(first, second);
+    const btScalar length = fixed::hypotf(first, second);
     const btScalar part = length > most ? most / length : btScalar(1);
     set(row, part * first);
     set(across, part * second);

@@ -200,7 +200,7 @@ bool IslandDirect::narrow_friction() {
     if (first.contact == nullptr || first.normal < 0) continue;
     if (first.contact->m_overrideNumSolverIterations != friction_along) continue;
     const double most = static_cast<double>(first.contact->m_friction) * outer_[at(first.normal)].impulse;
-    const double force = std::hypot(first.impulse, second.impulse);
+    const double force = fixed::hypot(first.impulse, second.impulse);
     if (!(force > kOutsideOfCone * most)) continue;
     for (OuterRow* row : {&first, &second}) {
       row->friction = static_cast<double>(row->contact->m_friction) * std::fabs(row->impulse) / force;

@@ -38,9 +38,9 @@ Vec3 told(const Quat& turn) {
   const Vec3 axis(q.x, q.y, q.z);
   const double sine = glm::length(axis);
   if (sine < 1e-12) return Vec3(0);
-  const double angle = 2 * std::atan2(sine, q.w);
+  const double angle = 2 * fixed::atan2(sine, q.w);
   const double most = kPi / 4;
-  const double way = angle <= most ? angle : most * std::tan(angle / 2) / std::tan(most / 2);
+  const double way = angle <= most ? angle : most * fixed::tan(angle / 2) / fixed::tan(most / 2);
   return axis / sine * way;
 }
 

@@ -162,9 +162,9 @@ void JointConstraint::read_angles(const btVector3* axes_b, bool principal) {
   const btScalar inner_inner = a_inner.dot(axes_b[inner_]);
   btScalar cosine = std::sqrt(middle_inner * middle_inner + inner_inner * inner_inner);
 
-  double outer = static_cast<double>(std::atan2(-s * middle_inner, inner_inner));
-  double middle = static_cast<double>(std::atan2(sine, cosine));
-  double inner = static_cast<double>(std::atan2(-s * a_outer.dot(axes_b[middle_]), a_outer.dot(axes_b[outer_])));
+  double outer = static_cast<double>(fixed::atan2f(-s * middle_inner, inner_inner));
+  double middle = static_cast<double>(fixed::atan2f(sine, cosine));
+  double inner = static_cast<double>(fixed::atan2f(-s * a_outer.dot(axes_b[middle_]), a_outer.dot(axes_b[outer_])));
   const double outer_near = unwrapped(outer_, outer);
   const double middle_near = principal ? middle : unwrapped(middle_, middle);
   const double inner_near = unwrapped(inner_, inner);
@@ -216,9 +216,9 @@ Vec3 JointConstraint::relrot() const {
   const btMatrix3x3 a = m_rbA.getCenterOfMassTransform().getBasis() * frame_a_.getBasis();
   const btMatrix3x3 r = a.transposeTimes(m_rbB.getCenterOfMassTransform().getBasis() * frame_b_.getBasis());
   const auto element = [&r](int i, int j) { return static_cast<double>(r[i][j]); };
-  Vec3 angles(std::atan2(element(2, 1), element(2, 2)),
-              std::atan2(-element(2, 0), std::hypot(element(2, 1), element(2, 2))),
-              std::atan2(element(1, 0), element(0, 0)));
+  Vec3 angles(fixed::atan2(element(2, 1), element(2, 2)),
+              fixed::atan2(-element(2, 0), fixed::hypot(element(2, 1), element(2, 2))),
+              fixed::atan2(element(1, 0), element(0, 0)));
   const AxisSettings& own = axes_[5];
   if (own.free() || reach(own) > kPi) angles.z = unwrapped(2, angles.z);
   return angles;

@@ -47,7 +47,7 @@ AxisDrive Panic::drive(MotorMode mode) const {
 }
 
 void Panic::brake(double h) {
-  const auto left = static_cast<btScalar>(std::exp(-kBrake * h));
+  const auto left = static_cast<btScalar>(fixed::exp(-kBrake * h));
   for (const auto& body : world_.bodies()) {
     if (!body->in_world()) continue;
     for (const auto& part : body->parts()) {

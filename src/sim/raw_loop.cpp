@@ -15,7 +15,7 @@ Vec3 ArmScene::center(int arm, int part) const {
 }
 
 double ArmScene::target(int joint, double time) {
-  return std::min(1.0, 2 * time) * 0.3 * std::sin(kPi * time + 0.4 * joint);
+  return std::min(1.0, 2 * time) * 0.3 * fixed::sin(kPi * time + 0.4 * joint);
 }
 
 RawLoop::RawLoop(const ArmScene& scene) : scene_(scene), box_(to_bt(scene.size * 0.5)) {

@@ -88,7 +88,7 @@ RawScene raw_tree(bool floating) {
     const Quat around = quat_axis({0, 0, 1}, 2 * kPi / 5 * arm);
     int last = 0;
     for (int i = 0; i < 5; ++i) {
-      s.parts.push_back({{0.2, 0.1, 0.1}, std::pow(0.8, i), {center + around * Vec3(0.25 + 0.2 * i, 0, 0), around}});
+      s.parts.push_back({{0.2, 0.1, 0.1}, fixed::pow(0.8, i), {center + around * Vec3(0.25 + 0.2 * i, 0, 0), around}});
       RawJoint j;
       j.parent = last;
       j.child = last = static_cast<int>(s.parts.size()) - 1;
@@ -145,16 +145,16 @@ RawScene raw_random_tree(unsigned seed, bool floor) {
   s.floor = floor;
   const int count = 3 + static_cast<int>(generator() % 28);
   s.parts.push_back(
-      {{0.1, 0.1, 0.2}, generator() % 2 == 0 ? 0 : std::pow(10, draw(-2, 2)), {{0, 0, 3}, quat_identity()}});
-  const double force = std::pow(10, draw(-1, 4));
-  const double speed = std::pow(10, draw(-0.5, 1.2));
+      {{0.1, 0.1, 0.2}, generator() % 2 == 0 ? 0 : fixed::pow(10, draw(-2, 2)), {{0, 0, 3}, quat_identity()}});
+  const double force = fixed::pow(10, draw(-1, 4));
+  const double speed = fixed::pow(10, draw(-0.5, 1.2));
   const double amplitude = draw(0.1, 1.2);
   for (int k = 1; k < count; ++k) {
     const int parent = generator() % 3 != 0 ? k - 1 : static_cast<int>(generator() % static_cast<unsigned>(k));
     const Vec3 way = direction();
     const Vec3 from = s.parts[static_cast<std::size_t>(parent)].pose.position;
     const Quat turned = quat_axis(direction(), draw(0, 3));
-    s.parts.push_back({{0.1, 0.1, 0.2}, std::pow(10, draw(-2, 2)), {from + way * 0.2, turned}});
+    s.parts.push_back({{0.1, 0.1, 0.2}, fixed::pow(10, draw(-2, 2)), {from + way * 0.2, turned}});
     RawJoint j;
     j.parent = parent;
     j.child = k;
@@ -239,7 +239,7 @@ RawScene raw_clump(int creatures) {
   s.gravity = Vec3(0);
   s.self_collision = true;
   s.attract = 4;
-  const int side = static_cast<int>(std::ceil(std::cbrt(creatures)));
+  const int side = static_cast<int>(std::ceil(fixed::cbrt(creatures)));
   for (int c = 0; c < creatures; ++c) {
     const Vec3 from = 0.8 * Vec3(c % side, c / side % side, c / (side * side)) - Vec3(0.4 * side, 0.4 * side, 0);
     const Quat turned = quat_axis(normalized(Vec3(1, 0.3 * c, 0.7)), 0.9 * c);

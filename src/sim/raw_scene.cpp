@@ -262,7 +262,7 @@ class IslandPlayer : private IslandMemory, public Player<IslandWorld> {
 
 double RawJoint::target(double time) const {
   if (square) return hold + ((static_cast<int>(time) & 1) != 0 ? amplitude : -amplitude);
-  return hold + std::min(1.0, 2 * time) * amplitude * std::sin(2 * kPi * frequency * time + phase);
+  return hold + std::min(1.0, 2 * time) * amplitude * fixed::sin(2 * kPi * frequency * time + phase);
 }
 
 void RawFigures::take(const RawFigures& o) {

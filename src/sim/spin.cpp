@@ -29,7 +29,7 @@ Quat rotation_of(const Vec3& way) {
 
 // Bullet's clamp: beyond kTurnClamp the tangent of half the angle grows in proportion.
 double held_turn(double angle) {
-  return angle <= kTurnClamp ? angle : 2 * std::atan(angle / kTurnClamp * std::tan(kTurnClamp / 2));
+  return angle <= kTurnClamp ? angle : 2 * fixed::atan(angle / kTurnClamp * fixed::tan(kTurnClamp / 2));
 }
 
 double squared(const Vec3& v) { return glm::dot(v, v); }
@@ -265,7 +265,7 @@ void free_motion(const Vec3& inertia, Quat& rotation, Vec3& w, double h) {
   const Vec3 off = glm::cross(now, momentum);
   const double sine = glm::length(off);
   if (sine > 1e-12 * squared(now)) {
-    rotation = quat_axis(off / sine, std::atan2(sine, glm::dot(now, momentum))) * rotation;
+    rotation = quat_axis(off / sine, fixed::atan2(sine, glm::dot(now, momentum))) * rotation;
   }
   rotation = glm::normalize(rotation);
   w = rotation * local;

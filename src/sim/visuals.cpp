@@ -25,19 +25,19 @@ struct View {
 // Rx(x)·Ry(y)·Rz(z), degrees
 Mat3 turn_of(const Vec3& rotation) {
   const Vec3 r = rotation / kDegrees;
-  const auto about = [](const Vec3& axis, double angle) { return glm::mat3_cast(glm::angleAxis(angle, axis)); };
+  const auto about = [](const Vec3& axis, double angle) { return glm::mat3_cast(quat_axis(axis, angle)); };
   return about({1, 0, 0}, r.x) * about({0, 1, 0}, r.y) * about({0, 0, 1}, r.z);
 }
 
 // Rz brings the direction into the plane of y and z, Rx from there to −z, which the eye looks along
 View view_between(const Vec3& eye, const Vec3& target) {
   const Vec3 along = target - eye;
-  const double flat = std::hypot(along.x, along.y);
+  const double flat = fixed::hypot(along.x, along.y);
   View view;
   view.distance = glm::length(along);
   // straight up or down any angle about z will do
-  const double heading = flat > 1e-9 * view.distance ? std::atan2(along.y, along.x) : std::numbers::pi / 2;
-  view.rotation = Vec3(std::atan2(-flat, -along.z), 0, std::numbers::pi / 2 - heading) * kDegrees;
+  const double heading = flat > 1e-9 * view.distance ? fixed::atan2(along.y, along.x) : std::numbers::pi / 2;
+  view.rotation = Vec3(fixed::atan2(-flat, -along.z), 0, std::numbers::pi / 2 - heading) * kDegrees;
   view.position = -(turn_of(view.rotation) * eye);
   return view;
 }

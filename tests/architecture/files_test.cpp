@@ -37,6 +37,15 @@ TEST(Files, PlantedFaultsAreFound) {
             std::vector<std::string>{"src/sim/a.cpp: has 501 lines, 500 are allowed"});
 }
 
+TEST(Files, MathIsTheSameOnEveryMachine) {
+  for (const SourceFile& file : source_files("src", {".h", ".cpp"})) {
+    for (const std::string& complaint : math_complaints(file.path, file.text)) ADD_FAILURE() << complaint;
+  }
+  EXPECT_EQ(math_complaints("src/sim/a.cpp", "x = std::sin(y) + glm::slerp(a, b, 1);").size(), 2U);
+  EXPECT_TRUE(math_complaints("src/sim/a.cpp", "x = fixed::sin(std::sqrt(y)) + std::exchange(a, b);").empty());
+  EXPECT_TRUE(math_complaints("src/view/a.cpp", "x = std::sin(y);").empty());
+}
+
 TEST(Files, TheMapNamesEveryRoom) {
   std::ifstream in(LIMBER_SOURCE_DIR "/src/README.md");
   const std::string map{std::istreambuf_iterator<char>(in), {}};

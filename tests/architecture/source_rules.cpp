@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <fstream>
 #include <iterator>
+#include <regex>
 #include <sstream>
 
 namespace limber::rules {
@@ -215,6 +216,19 @@ std::vector<std::string> shape_complaints(std::string_view path, std::string_vie
   const auto lines = std::count(text.begin(), text.end(), '\n');
   if (lines > kMostLines) {
     complaints.push_back(std::string(path) + ": has " + std::to_string(lines) + " lines, 500 are allowed");
+  }
+  return complaints;
+}
+
+std::vector<std::string> math_complaints(std::string_view path, std::string_view text) {
+  static const std::regex modules("src/(base|params|model|sim|behaviors|script|engine)/.*");
+  static const std::regex call(
+      R"((std::(a?(sin|cos|tan)h?|atan2|exp[2m]?1?|log(2|10|1p)?|pow|cbrt|hypot|[lt]gamma|erfc?)f?|)"
+      R"(glm::(angleAxis|slerp|eulerAngles|pow|exp2?|log2?|a?(sin|cos|tan)h?|rotate|angle))\()");
+  std::vector<std::string> complaints;
+  if (!std::regex_match(path.begin(), path.end(), modules)) return complaints;
+  for (std::cregex_iterator found(text.data(), text.data() + text.size(), call), end; found != end; ++found) {
+    complaints.push_back(std::string(path) + ": calls " + found->str(1) + "; use limber::fixed (base/fixed_math.h)");
   }
   return complaints;
 }

@@ -17,6 +17,10 @@ std::vector<std::string> system_complaints(std::string_view path, std::string_vi
 /// Complaints about a file's first line and its length.
 std::vector<std::string> shape_complaints(std::string_view path, std::string_view text);
 
+/// Complaints about calls of the C library's mathematical functions where only those of base/fixed_math.h give the same
+/// bits on every machine: in the modules whose results reach the state hash.
+std::vector<std::string> math_complaints(std::string_view path, std::string_view text);
+
 /// The rooms, base first: the folders that src/ may have.
 std::vector<std::string> rooms();
 

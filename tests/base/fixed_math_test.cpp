@@ -1,15 +1,18 @@
 // Math functions with bit-identical results: errors against MPFR, special cases, exact results, golden bits.
 #include "base/fixed_math.h"
 
+#include <dlfcn.h>
 #include <gtest/gtest.h>
 
 #include <array>
+#include <cfenv>
 #include <cmath>
 #include <string>
 #include <utility>
 
 #include "base/fixed_math_reference.h"
 #include "base/hash.h"
+#include "base/random.h"
 
 namespace limber::base_test {
 namespace {
@@ -50,6 +53,49 @@ TEST_P(FixedMath, NaNsAreAllTheSame) {
 }
 
 TEST(FixedMathArithmetic, IsExact) { EXPECT_TRUE(m::is_arithmetic_exact()); }
+
+TEST(FixedMathArithmetic, IsResetAfterALibraryHasChangedIt) {
+  std::fesetround(FE_UPWARD);
+  EXPECT_FALSE(m::is_arithmetic_exact());
+  m::reset_arithmetic();
+  EXPECT_TRUE(m::is_arithmetic_exact());
+}
+
+// The C library's functions, called through their names as another library calls them.
+template <typename Function>
+Function* library(const char* name) {
+  return reinterpret_cast<Function*>(dlsym(RTLD_DEFAULT, name));
+}
+
+TEST(LibmReplacement, GivesLibrariesTheFixedFunctions) {
+  EXPECT_TRUE(m::is_libm_replaced());
+  Random random(7);
+  for (int i = 0; i < 20000; i++) {
+    const double x = random.uniform(-20, 20);
+    const double y = random.uniform(0, 20);
+    const auto f = static_cast<float>(x);
+    ASSERT_EQ(library<double(double)>("sin")(x), m::sin(x)) << x;
+    ASSERT_EQ(library<double(double)>("tan")(x), m::tan(x)) << x;
+    ASSERT_EQ(library<double(double)>("exp")(x), m::exp(x)) << x;
+    ASSERT_EQ(library<double(double)>("log10")(y), m::log10(y)) << y;
+    ASSERT_EQ(library<double(double, double)>("pow")(y, x), m::pow(y, x)) << x;
+    ASSERT_EQ(library<float(float)>("tanf")(f), m::tanf(f)) << f;
+    ASSERT_EQ(library<float(float, float)>("atan2f")(f, 1), m::atan2f(f, 1)) << f;
+    float sine = 0;
+    float cosine = 0;
+    library<void(float, float*, float*)>("sincosf")(f, &sine, &cosine);
+    ASSERT_EQ(sine, m::sinf(f)) << f;
+    ASSERT_EQ(cosine, m::cosf(f)) << f;
+  }
+}
+
+TEST(LibmReplacement, SquaresAsCompiledLuaDoes) {
+  Random random(8);
+  for (int i = 0; i < 20000; i++) {
+    const double x = random.uniform(-1e3, 1e3);
+    ASSERT_EQ(library<double(double, double)>("pow")(x, 2), x * x);
+  }
+}
 
 // An argument and its result. Results are compared bit by bit, including signs of zeros and NaNs.
 using Case = std::pair<double, double>;

@@ -30,8 +30,6 @@ std::string machine_name() {
   return std::string(machine.sysname) + " " + machine.machine;
 }
 
-void* next_symbol(const char* name) { return dlsym(RTLD_NEXT, name); }
-
 void* find_symbol(const char* name) { return dlsym(RTLD_DEFAULT, name); }
 
 }  // namespace limber::system

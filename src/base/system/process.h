@@ -27,8 +27,6 @@ std::string processor_name();
 /// Bytes that the program holds on its heap; 0 where the system does not count them.
 double heap_bytes();
 
-/// The function of this name that the dynamic linker finds behind this program's own: the C library's, say. Null: none.
-void* next_symbol(const char* name);
 /// The function of this name in the program or a library that it has loaded. Null: none.
 void* find_symbol(const char* name);
 

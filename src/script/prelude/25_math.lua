@@ -11,7 +11,7 @@ function extra.clamp(x, lo, hi)
     fail("math.clamp takes three numbers: what, from, to")
   end
   -- Not compared here: each outcome would become a way of its own through the loop around it, and a compiler that has
-  -- too many leaves the loop. Nor by math.min and max, whose -0 is another one compiled.
+  -- too many leaves the loop.
   return api.clamp(x, lo, hi)
 end
 function extra.lerp(a, b, t) return a + (b - a) * t end

@@ -1,7 +1,8 @@
 -- Errors as a person reads them: file:line: what, the source line, the way there through the scripts.
 local P = ...
 local api, ctx = P.api, P.ctx
-local getinfo, format, sub, find = debug.getinfo, string.format, string.sub, string.find
+local getinfo, format, sub, find = debug.getinfo, string.format, P.native_sub, string.find
+jit.off(true, true)  -- native_sub; and a stack overflow leaves room for little else
 
 -- text of every script by the name that messages show; true where it is no longer known
 local sources = {}

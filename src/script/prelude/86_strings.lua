@@ -2,7 +2,7 @@
 local P = ...
 local ffi, api, ctx, fail, describe = P.ffi, P.api, P.ctx, P.fail, P.describe
 local native, floor, huge = string, math.floor, math.huge
-local sub, byte, getmetatable = string.sub, string.byte, debug.getmetatable
+local native_sub, byte, getmetatable = P.native_sub, string.byte, debug.getmetatable
 local match = api.match(ctx)
 
 local kLong = 4 * 2 ^ 20  -- what walks a whole text in C takes up to that many bytes
@@ -39,19 +39,25 @@ function P.show(value)
 end
 local show = P.show
 
+-- the bytes from `first` (0: the first one) up to `last`, 0 <= first, last <= #text
+local function part(text, first, last)
+  if not (first < last) then return "" end
+  return native_sub(text, first + 1, last)
+end
+
 -- the captures of the last match, from the i-th on
 local function capture(text, i)
   local length = match.length[i]
   if length == -2 then return match.from[i] + 1 end
   if length == -1 then fail("unfinished capture") end
-  return sub(text, match.from[i] + 1, match.from[i] + length)
+  return part(text, match.from[i], match.from[i] + length)
 end
 local function captures(text, i, count)
   if i == count - 1 then return capture(text, i) end
   return capture(text, i), captures(text, i + 1, count)
 end
 local function whole_or_captures(text)
-  if match.count == 0 then return sub(text, match.start + 1, match["end"]) end
+  if match.count == 0 then return part(text, match.start, match["end"]) end
   return captures(text, 0, match.count)
 end
 
@@ -110,16 +116,16 @@ local function expand(replacement, text)
     local c = byte(replacement, i)
     if c ~= 37 then
       local stop = native.find(replacement, "%", i, true) or #replacement + 1
-      pieces[#pieces + 1] = sub(replacement, i, stop - 1)
+      pieces[#pieces + 1] = part(replacement, i - 1, stop - 1)
       i = stop
     else
       c = byte(replacement, i + 1)
       if c == 48 then
-        pieces[#pieces + 1] = sub(text, match.start + 1, match["end"])
+        pieces[#pieces + 1] = part(text, match.start, match["end"])
       elseif c and c > 48 and c <= 57 then
         local wanted = c - 49
         if wanted > 0 and wanted >= match.count then fail("string.gsub: invalid capture index") end
-        pieces[#pieces + 1] = wanted >= match.count and sub(text, match.start + 1, match["end"]) or
+        pieces[#pieces + 1] = wanted >= match.count and part(text, match.start, match["end"]) or
           capture(text, wanted)
       else
         pieces[#pieces + 1] = c and native.char(c) or "\0"
@@ -135,11 +141,11 @@ local function replaced(kind, replacement, text)
   local start, stop = match.start, match["end"]  -- what is called may search itself
   local value
   if kind == "table" then
-    value = replacement[match.count == 0 and sub(text, start + 1, stop) or capture(text, 0)]
+    value = replacement[match.count == 0 and part(text, start, stop) or capture(text, 0)]
   else
     value = replacement(whole_or_captures(text))
   end
-  if not value then return sub(text, start + 1, stop) end
+  if not value then return part(text, start, stop) end
   if type(value) ~= "string" and type(value) ~= "number" then
     fail("string.gsub: invalid replacement value (a %s)", type(value))
   end
@@ -159,14 +165,14 @@ function S.gsub(text, pattern, replacement, most)
   while count < most and from <= #text and search(text, pattern, from, 1, "gsub") do
     local start, stop = match.start, match["end"]
     count = count + 1
-    if start > copied then pieces[#pieces + 1] = sub(text, copied + 1, start) end
+    if start > copied then pieces[#pieces + 1] = part(text, copied, start) end
     pieces[#pieces + 1] = kind == "plain" and replacement or replaced(kind, replacement, text)
     copied = stop
     from = stop > start and stop or stop + 1
     if byte(pattern, 1) == 94 then break end
   end
   if count == 0 then return text, 0 end
-  pieces[#pieces + 1] = sub(text, copied + 1)
+  pieces[#pieces + 1] = part(text, copied, #text)
   return table.concat(pieces), count
 end
 
