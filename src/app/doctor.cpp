@@ -109,7 +109,7 @@ int doctor_command(const DoctorCommand& command) {
   finding(exact ? "ok" : "no", "arithmetic",
           exact ? "as on every other machine: a scene, a seed and its commands give the same hash"
                 : "hashes and takes of other machines do not match: the program was compiled with -ffast-math or "
-                  "-ffp-contract, or a preloaded library replaces the mathematical functions");
+                  "-ffp-contract, or without exporting its mathematical functions");
 
   const std::string data = data_dir();
   if (data.empty()) {

@@ -83,7 +83,10 @@ void Guard::limit(const ScriptLimits& limits) {
 }
 
 void Guard::use(int handler, int stopped_fault, int failed) {
-  handler_ = handler;
+  lua_pushlightuserdata(state_, this);
+  lua_rawgeti(state_, LUA_REGISTRYINDEX, handler);
+  lua_pushcclosure(state_, &Guard::on_error, 2);
+  handler_ = luaL_ref(state_, LUA_REGISTRYINDEX);
   stopped_fault_ = stopped_fault;
   failed_ = failed;
 }
@@ -160,6 +163,7 @@ void Guard::begin(Kind kind) {
   kind_ = kind;
   running_ = true;
   fired_ = false;
+  overflowed_ = false;
   hooked_ = false;
   reason_ = Reason::none;
   if (kind == Kind::call) {
@@ -227,16 +231,16 @@ void Guard::on_hook(lua_State* state, lua_Debug*) {
   lua_error(state);
 }
 
-void Guard::note_place(lua_State* state) {
+void Guard::note_place(lua_State* state, int level) {
   stop_file_[0] = 0;
   stop_line_ = 0;
-  if (!place_of(state) && state != state_) place_of(state_);
+  if (!place_of(state, level) && state != state_) place_of(state_, 0);
 }
 
 // the nearest script: its source's name begins with @, those of the prelude do not
-bool Guard::place_of(lua_State* state) {
+bool Guard::place_of(lua_State* state, int level) {
   lua_Debug at{};
-  for (int level = 0; level < 250 && lua_getstack(state, level, &at) != 0; level++) {
+  for (; level < 250 && lua_getstack(state, level, &at) != 0; level++) {
     lua_getinfo(state, "Sl", &at);
     if (at.source[0] != '@' || at.currentline <= 0) continue;
     std::strncpy(stop_file_, at.source + 1, sizeof stop_file_ - 1);
@@ -295,12 +299,31 @@ void Guard::take_fault(int status, int function) {
     lua_getfield(L, table, "text");
   }
   fault_.text = text_at_top();
+  if (overflowed_ && stop_line_ != 0) {
+    fault_.file = stop_file_;
+    fault_.line = stop_line_;
+    fault_.text = fmt::format("{}:{}: stack overflow", fault_.file, fault_.line);
+  }
   if (fault_.text.empty()) fault_.text = "an error without text";
   if (fault_.line == 0) place_at_function(function);
   // what LuaJIT says of one piece that is refused
   constexpr std::string_view kRefused = "not enough memory";
   const std::string_view first_line = std::string_view(fault_.text).substr(0, fault_.text.find('\n'));
   if (first_line.ends_with(kRefused)) fault_.text.insert(first_line.size(), ": " + memory_text());
+}
+
+// The message handler: calls that of the prelude, for which a stack that has overflowed has no room left.
+int Guard::on_error(lua_State* state) {
+  auto& guard = *static_cast<Guard*>(lua_touserdata(state, lua_upvalueindex(1)));
+  if (lua_type(state, 1) == LUA_TSTRING && std::string_view(lua_tostring(state, 1)).ends_with("stack overflow")) {
+    guard.overflowed_ = true;
+    guard.note_place(state, 2);  // 0 is this function, 1 the one that found no room to begin
+    return 1;
+  }
+  lua_pushvalue(state, lua_upvalueindex(2));
+  lua_insert(state, 1);
+  lua_call(state, 1, 1);
+  return 1;
 }
 
 // A function that ended in a call of ours has left the stack, and LuaJIT tells no place when it finds no room: then it

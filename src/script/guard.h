@@ -90,8 +90,9 @@ class Guard {
   std::string memory_text() const;
   void take_fault(int status, int function);
   void place_at_function(int function);
-  void note_place(lua_State* state);
-  bool place_of(lua_State* state);
+  void note_place(lua_State* state, int level = 0);
+  static int on_error(lua_State* state);
+  bool place_of(lua_State* state, int level);
   static void on_hook(lua_State* state, lua_Debug* at);
 
   lua_State* state_;
@@ -112,7 +113,8 @@ class Guard {
   // written from the signal too
   volatile bool hooked_ = false;
   volatile Reason reason_ = Reason::none;
-  // where the stop met the script
+  bool overflowed_ = false;
+  // where the stop, or the overflow of the stack, met the script
   bool fired_ = false;
   int stop_line_ = 0;
   char stop_file_[256] = {};

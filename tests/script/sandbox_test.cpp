@@ -220,6 +220,16 @@ TEST(Sandbox, SortAndGsub) {
   EXPECT_EQ(error_of("local function f(x) return (('x'):gsub('x', f)) end f()"), "scripts/scene.lua:1: stack overflow");
 }
 
+// What calls itself through functions of the prelude, whose frames differ in size
+TEST(Sandbox, AStackOverflowHasAPlace) {
+  for (const char* text : {"local function f(x)\n  return math.min(1, f(x))\nend\nf('x')",
+                           "local function f(x)\n  return (x .. 'a'):sub(1, -1) .. f(x)\nend\nf('x')",
+                           "local function f(x)\n  return 1 + f(x, f)\nend\nf('x')",
+                           "local function f()\n  return (('ab'):gsub('(a)', f))\nend\nf()"}) {
+    EXPECT_EQ(error_of(text), "scripts/scene.lua:2: stack overflow") << text;
+  }
+}
+
 TEST(Sandbox, CoroutinesWorkAndDoNotNestForEver) {
   EXPECT_EQ(value_of("table.concat(t, ' ')", R"(
 t = {}
