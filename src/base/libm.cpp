@@ -4,6 +4,7 @@
 // libraries therefore call these definitions too, and the results of math.sin in a script or of an angle that Bullet
 // computes depend on neither the version of the C library nor on the processor. is_libm_replaced() checks this.
 #include <cmath>
+#include <initializer_list>
 
 #include "base/fixed_math.h"
 #include "base/system/process.h"
