@@ -9,6 +9,8 @@
 #include <imgui.h>
 #include <imgui_internal.h>
 
+#include "gui/imgui_versions.h"
+
 namespace limber {
 
 namespace {
@@ -70,7 +72,8 @@ ImFont* load(const std::string& file, double pixels, const char* name, const std
   }
   if (others.empty() || letters.empty()) return font;
   config.MergeMode = true;
-  atlas.AddFontFromFileTTF(others.c_str(), size, &config, letters.Data);
+  // where glyphs are drawn on demand, the font needs no ranges, which would have to outlive it
+  atlas.AddFontFromFileTTF(others.c_str(), size, &config, imgui::builds_fonts() ? letters.Data : nullptr);
   return font;
 }
 
@@ -114,7 +117,7 @@ Fonts load_fonts(const FontFiles& files, double pixels, const std::set<unsigned>
   Fonts fonts;
   fonts.words = load(files.words, pixels, "words", files.others, ranges);
   fonts.code = load(files.code, pixels * 17 / 16, "code", files.others, ranges);  // its letters are lower
-  atlas.Build();
+  if (imgui::builds_fonts()) atlas.Build();
   return fonts;
 }
 

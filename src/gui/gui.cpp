@@ -9,6 +9,7 @@
 #include <imgui_impl_opengl3.h>
 
 #include "base/log.h"
+#include "gui/imgui_versions.h"
 #include "gui/theme.h"
 
 namespace limber {
@@ -22,31 +23,6 @@ constexpr ImGuiWindowFlags kFixed = ImGuiWindowFlags_NoTitleBar | ImGuiWindowFla
 
 // over the others
 constexpr ImGuiWindowFlags kAbove = kFixed & ~ImGuiWindowFlags_NoBringToFrontOnFocus;
-
-void map_keys(ImGuiIO& io) {
-  const auto map = [&](ImGuiKey to, GuiKey from) { io.KeyMap[to] = static_cast<int>(from); };
-  map(ImGuiKey_Tab, GuiKey::tab);
-  map(ImGuiKey_LeftArrow, GuiKey::left);
-  map(ImGuiKey_RightArrow, GuiKey::right);
-  map(ImGuiKey_UpArrow, GuiKey::up);
-  map(ImGuiKey_DownArrow, GuiKey::down);
-  map(ImGuiKey_PageUp, GuiKey::page_up);
-  map(ImGuiKey_PageDown, GuiKey::page_down);
-  map(ImGuiKey_Home, GuiKey::home);
-  map(ImGuiKey_End, GuiKey::end);
-  map(ImGuiKey_Insert, GuiKey::insert);
-  map(ImGuiKey_Delete, GuiKey::erase);
-  map(ImGuiKey_Backspace, GuiKey::backspace);
-  map(ImGuiKey_Space, GuiKey::space);
-  map(ImGuiKey_Enter, GuiKey::enter);
-  map(ImGuiKey_Escape, GuiKey::escape);
-  map(ImGuiKey_A, GuiKey::a);
-  map(ImGuiKey_C, GuiKey::c);
-  map(ImGuiKey_V, GuiKey::v);
-  map(ImGuiKey_X, GuiKey::x);
-  map(ImGuiKey_Y, GuiKey::y);
-  map(ImGuiKey_Z, GuiKey::z);
-}
 
 void set_clipboard(void* options, const char* text) { static_cast<const GuiOptions*>(options)->copy(text); }
 const char* get_clipboard(void* options) {
@@ -110,7 +86,7 @@ Gui::Gui(EngineLink& link, GuiOptions options)
   io.SetClipboardTextFn = set_clipboard;
   io.GetClipboardTextFn = get_clipboard;
   io.MousePos = {-1, -1};
-  map_keys(io);
+  imgui::start_input(io);
   files_ = find_fonts(options_.font_root);
   for (const std::string& line : files_.said) log_warning("{}", line);
   desk_.settings = options_.settings;
@@ -134,12 +110,7 @@ void Gui::renew_fonts(const GuiFrame& frame) {
   desk_.scale = pixels / 16;
   desk_.fonts = load_fonts(files_, pixels, letters_);
   apply_theme(desk_.scale);
-  if (!options_.paints) {
-    ImGui::GetIO().Fonts->SetTexID(nullptr);
-  } else if (painted_fonts_) {
-    ImGui_ImplOpenGL3_DestroyFontsTexture();
-    ImGui_ImplOpenGL3_CreateFontsTexture();
-  }
+  imgui::publish_fonts(options_.paints, painted_fonts_);
 }
 
 // names may have letters that the fonts lack: those alone are taken of a third, as it has some ten thousand
@@ -309,7 +280,7 @@ void Gui::draw_help() {
   if (ImGui::Begin("##help", nullptr, kAbove | ImGuiWindowFlags_AlwaysAutoResize)) {
     // closer together, then smaller, where there are too many lines for the window
     const float lines = static_cast<float>(hotkeys().size()) + 7;
-    const float high = std::max(ImGui::GetFontSize(), desk_.fonts.code->FontSize);
+    const float high = std::max(ImGui::GetFontSize(), imgui::font_height(*desk_.fonts.code));
     const float room = (size.y - 16 - 2 * ImGui::GetStyle().WindowPadding.y) / lines;
     ImGui::SetWindowFontScale(std::clamp(room / high, 0.5F, 1.0F));
     ImGui::TextUnformatted("Keys and hands");

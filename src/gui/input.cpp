@@ -3,27 +3,14 @@
 
 #include <utility>
 
-#include <imgui.h>
+#include "gui/imgui_versions.h"
 
 namespace limber {
 
 namespace {
 
-void tell_mods(ImGuiIO& io, const KeyMods& mods) {
-  io.KeyCtrl = mods.ctrl;
-  io.KeyShift = mods.shift;
-  io.KeyAlt = mods.alt;
-}
-
 // keys that do something to a text by themselves; letters come as text beside their keys
 bool acts_on_text(GuiKey key) { return key > GuiKey::none && key < GuiKey::period && key != GuiKey::space; }
-
-void let_go(ImGuiIO& io) {
-  for (bool& down : io.MouseDown) down = false;
-  for (bool& down : io.KeysDown) down = false;
-  tell_mods(io, {});
-  io.AddFocusEvent(false);
-}
 
 }  // namespace
 
@@ -40,8 +27,9 @@ bool InputQueue::take_button(const InputEvent& event, Taken& taken) {
   if (!event.down && taken.moved) return false;  // a drag's end counts before it is let go of
   taken.buttons[static_cast<std::size_t>(event.button)] = taken.any_button = true;
   ImGuiIO& io = ImGui::GetIO();
-  tell_mods(io, event.mods);
-  io.MouseDown[event.button] = event.down;
+  imgui::set_mods(io, event.mods);
+  imgui::set_button(io, event.button, event.down);
+  held_[static_cast<std::size_t>(event.button)] = event.down;
   return true;
 }
 
@@ -49,7 +37,7 @@ bool InputQueue::take_key(const InputEvent& event, Taken& taken) {
   ImGuiIO& io = ImGui::GetIO();
   if (event.key == GuiKey::none) {  // a modifier alone
     if (taken.any_button || taken.any_text) return false;
-    tell_mods(io, event.mods);
+    imgui::set_mods(io, event.mods);
     return true;
   }
   const auto key = static_cast<std::size_t>(event.key);
@@ -59,8 +47,8 @@ bool InputQueue::take_key(const InputEvent& event, Taken& taken) {
   if ((taken.keys[key] && !letter) || taken.any_button || (taken.any_text && !letter)) return false;
   taken.keys[key] = true;
   taken.any_key |= acts_on_text(event.key);
-  tell_mods(io, event.mods);
-  io.KeysDown[key] = event.down;
+  imgui::set_mods(io, event.mods);
+  imgui::set_key(io, event.key, event.down);
   if (event.down) taken.pressed.push_back({event.key, event.mods});
   return true;
 }
@@ -71,16 +59,15 @@ bool InputQueue::take(const InputEvent& event, Taken& taken) {
   switch (event.kind) {
     case InputEvent::Kind::move:
       if (taken.any_button) return false;  // a press is where the mouse was then
-      taken.moved = io.MouseDown[0] || io.MouseDown[1] || io.MouseDown[2];
+      taken.moved = held_[0] || held_[1] || held_[2];
       x_ = event.x;
       y_ = event.y;
-      io.MousePos = {static_cast<float>(x_), static_cast<float>(y_)};
+      imgui::set_position(io, static_cast<float>(x_), static_cast<float>(y_));
       return true;
     case InputEvent::Kind::button:
       return take_button(event, taken);
     case InputEvent::Kind::wheel:
-      io.MouseWheelH += static_cast<float>(event.x);
-      io.MouseWheel += static_cast<float>(event.y);
+      imgui::add_wheel(io, static_cast<float>(event.x), static_cast<float>(event.y));
       return true;
     case InputEvent::Kind::key:
       return take_key(event, taken);
@@ -90,8 +77,12 @@ bool InputQueue::take(const InputEvent& event, Taken& taken) {
       io.AddInputCharacter(event.letter);
       return true;
     case InputEvent::Kind::focus:
-      if (!event.down) let_go(io);
-      if (event.down) io.AddFocusEvent(true);
+      if (event.down) {
+        io.AddFocusEvent(true);
+      } else {
+        imgui::release_all(io);
+        held_ = {};
+      }
       return true;
   }
   return true;

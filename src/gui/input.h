@@ -1,5 +1,5 @@
-// What hands do, as events in their order, and how Dear ImGui 1.86, which has no queue, is told of them: a press and a
-// release within one frame become two frames, so that none is lost.
+// InputQueue: events of mouse and keyboard in their order, distributed over frames of Dear ImGui: a press and a release
+// within one frame become two frames, so that none is lost.
 #pragma once
 
 #include <array>
@@ -130,10 +130,11 @@ class InputQueue {
     bool any_text = false;
   };
   bool take(const InputEvent& event, Taken& taken);
-  static bool take_button(const InputEvent& event, Taken& taken);
+  bool take_button(const InputEvent& event, Taken& taken);
   static bool take_key(const InputEvent& event, Taken& taken);
 
   std::deque<InputEvent> events_;
+  std::array<bool, 3> held_{};  // buttons, as reported to Dear ImGui
   double x_ = -1, y_ = -1;
 };
 

@@ -8,6 +8,7 @@
 #include <imgui.h>
 #include <imgui_internal.h>
 
+#include "gui/imgui_versions.h"
 #include "gui/theme.h"
 
 namespace limber {
@@ -105,17 +106,16 @@ bool number_bar(const char* id_text, const BarRange& range, float width, double&
                    {window->DC.CursorPos.x + width, window->DC.CursorPos.y + ImGui::GetFrameHeight()});
   ImGui::ItemSize(box, ImGui::GetStyle().FramePadding.y);
   if (!ImGui::ItemAdd(box, id, &box, ImGuiItemFlags_Inputable)) return false;
-  const bool hovered = ImGui::ItemHoverable(box, id);
+  const bool hovered = imgui::is_hovered(box, id);
   bool typing = ImGui::TempInputIsActive(id);
   if (!typing) {
-    const bool tabbed = (g.LastItemData.StatusFlags & ImGuiItemStatusFlags_FocusedByTabbing) != 0;
-    const bool clicked = hovered && g.IO.MouseClicked[0];
-    if (tabbed || clicked || g.NavActivateId == id || g.NavActivateInputId == id) {
+    const imgui::Activation activation = imgui::activation(id, hovered);
+    if (activation.active) {
       ImGui::SetActiveID(id, window);
       ImGui::SetFocusID(id, window);
       ImGui::FocusWindow(window);
       g.ActiveIdUsingNavDirMask |= (1u << ImGuiDir_Left) | (1u << ImGuiDir_Right);
-      typing = tabbed || (clicked && g.IO.KeyCtrl) || g.NavActivateInputId == id;
+      typing = activation.by_text;
     }
   }
   const double low = range.min;

@@ -4,6 +4,7 @@
 
 #include "gui/fault_list.h"
 #include "gui/icons.h"
+#include "gui/imgui_versions.h"
 #include "gui/panel.h"
 #include "gui/theme.h"
 
@@ -52,8 +53,8 @@ class ErrorsPanel : public Panel {
     ImDrawList& list = *ImGui::GetWindowDrawList();
     draw_icon(error ? Icon::warning : Icon::right, from.x + sign * 0.4F, from.y + ImGui::GetFontSize() * 0.55F,
               ImGui::GetFontSize() * 0.36F, color);
-    list.AddText(desk.fonts.code, desk.fonts.code->FontSize, {from.x + sign, from.y}, color, fault.line.text.c_str(),
-                 nullptr, wrap);
+    list.AddText(desk.fonts.code, imgui::font_height(*desk.fonts.code), {from.x + sign, from.y}, color,
+                 fault.line.text.c_str(), nullptr, wrap);
     ImGui::PopID();
   }
 

@@ -1,5 +1,6 @@
 // Parameters: the rows of what is chosen, of the scene, the world and the picture; search over all; favourites.
 #include <array>
+#include <utility>
 
 #include <fmt/format.h>
 #include <imgui.h>
@@ -39,8 +40,10 @@ class ParametersPanel : public Panel {
 
   void draw(Desk& desk) override {
     const float side = ImGui::GetFrameHeight() * 1.15F;
-    if (desk.focus_search) ImGui::SetKeyboardFocusHere();
-    desk.focus_search = false;
+    if (std::exchange(desk.focus_search, false)) {
+      ImGui::SetWindowFocus();  // Dear ImGui 1.90.1 focuses items of the focused window only
+      ImGui::SetKeyboardFocusHere();
+    }
     search_field(desk, "parameters.search", "search (Ctrl+F)", words_,
                  ImGui::GetContentRegionAvail().x - side - ImGui::GetStyle().ItemSpacing.x);
     ImGui::SameLine();

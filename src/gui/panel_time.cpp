@@ -2,13 +2,13 @@
 #include <algorithm>
 
 #include <fmt/format.h>
-#include <imgui.h>
 #include <imgui_internal.h>
 
 #include "base/text.h"
 #include "gui/clock_text.h"
 #include "gui/history_bar.h"
 #include "gui/icons.h"
+#include "gui/imgui_versions.h"
 #include "gui/panel.h"
 #include "gui/property_widget.h"
 #include "gui/theme.h"
@@ -35,7 +35,7 @@ class TimePanel : public Panel {
     const ImGuiStyle& style = ImGui::GetStyle();
     const bool compact = ImGui::GetWindowWidth() < static_cast<float>(kCompactBelow) * s * 0.95F;
     const float rows = compact ? 2 : 1;  // above this one
-    const float row = desk.fonts.code->FontSize + 2 * style.FramePadding.y + style.ItemSpacing.y;
+    const float row = imgui::font_height(*desk.fonts.code) + 2 * style.FramePadding.y + style.ItemSpacing.y;
     ImGui::SetCursorPos({style.WindowPadding.x, style.WindowPadding.y + rows * row});
     speed(desk, s);
     if (take_.replays) {
@@ -145,12 +145,10 @@ class TimePanel : public Panel {
     if (ImGui::InvisibleButton("##refusal", {width, high})) desk.copied(desk.refusal);
     desk.names.note("refusal");
     if (ImGui::IsItemHovered()) ImGui::SetTooltip("refused: %s", desk.refusal.c_str());
-    ImDrawList& list = *ImGui::GetWindowDrawList();
     draw_icon(Icon::warning, low.x + high * 0.45F, low.y + high / 2, high * 0.3F, packed(Tone::red));
     const float top = low.y + ImGui::GetStyle().FramePadding.y;
     ImGui::PushStyleColor(ImGuiCol_Text, packed(Tone::red));
-    ImGui::RenderTextEllipsis(&list, {low.x + high, top}, {low.x + width, low.y + high}, low.x + width, low.x + width,
-                              desk.refusal.c_str(), desk.refusal.c_str() + desk.refusal.size(), nullptr);
+    imgui::text_ellipsis({low.x + high, top}, {low.x + width, low.y + high}, desk.refusal);
     ImGui::PopStyleColor();
   }
 

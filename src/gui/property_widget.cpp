@@ -10,6 +10,7 @@
 #include <imgui_internal.h>
 
 #include "gui/icons.h"
+#include "gui/imgui_versions.h"
 #include "gui/lua_path.h"
 #include "gui/number_bar.h"
 #include "gui/theme.h"
@@ -136,8 +137,7 @@ void told(Desk& desk, const PlacedRow& at, const HandValues::Values& values, flo
   desk.names.note(at.path);
   const float y = from.y + ImGui::GetStyle().FramePadding.y;
   ImGui::PushStyleColor(ImGuiCol_Text, packed(fault ? Tone::red : Tone::text));
-  ImGui::RenderTextEllipsis(ImGui::GetWindowDrawList(), {from.x, y}, {from.x + width, y + ImGui::GetTextLineHeight()},
-                            from.x + width, from.x + width, text.c_str(), text.c_str() + text.size(), nullptr);
+  imgui::text_ellipsis({from.x, y}, {from.x + width, y + ImGui::GetTextLineHeight()}, text);
   ImGui::PopStyleColor();
   ImGui::PopFont();
   property_hint(desk, at);
@@ -208,8 +208,7 @@ void name_text(Desk& desk, const PlacedRow& at, const RowFrame& frame, bool brig
   ImGui::Dummy({width, ImGui::GetFrameHeight()});
   const float y = from.y + ImGui::GetStyle().FramePadding.y;
   ImGui::PushStyleColor(ImGuiCol_Text, packed(bright ? Tone::text : Tone::dim));
-  ImGui::RenderTextEllipsis(ImGui::GetWindowDrawList(), {from.x, y}, {from.x + width, y + ImGui::GetTextLineHeight()},
-                            from.x + width, from.x + width, text.c_str(), text.c_str() + text.size(), nullptr);
+  imgui::text_ellipsis({from.x, y}, {from.x + width, y + ImGui::GetTextLineHeight()}, text);
   ImGui::PopStyleColor();
   desk.names.note("name:" + at.path);
   property_hint(desk, at);

@@ -1,4 +1,6 @@
 // The tree of things: opens, finds, chooses; cheap with many.
+#include <algorithm>
+
 #include "gui/rig.h"
 #include "gui/tree_list.h"
 

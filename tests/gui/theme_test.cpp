@@ -1,6 +1,8 @@
 // Colours: WCAG's own examples, and what is written on what.
 #include "gui/theme.h"
 
+#include <algorithm>
+
 #include <gtest/gtest.h>
 
 namespace limber {
