@@ -30,7 +30,8 @@ int handle_failed_request(void*, void*) {
   return 0;
 }
 
-// by name: GLFW links Xlib, its Wayland form does not
+// Sets a handler of Xlib, if Xlib is in use: GLFW before 3.4 links it, later versions load it where only they see it,
+// and windows of Wayland do without.
 template <class Handler>
 void set_handler(const char* setter, Handler handler) {
   using Setter = Handler (*)(Handler);

@@ -2,6 +2,7 @@
 #include "params/table.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include "base/check.h"
 #include "base/text.h"

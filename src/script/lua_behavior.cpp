@@ -99,9 +99,12 @@ void LuaBehavior::take_over(Behavior& before) {
 void LuaBehavior::pass_memory(KeyBytes& key) {
   bool inherits = inherited_.has_value();
   key.pass_all(number_, started_, inherits);
-  if (inherits && !inherited_) inherited_.emplace();
-  if (!inherits) inherited_.reset();
-  if (inherits) key.pass_all(inherited_->state, inherited_->from);
+  if (inherits) {
+    Inheritance& inherited = inherited_ ? *inherited_ : inherited_.emplace();
+    key.pass_all(inherited.state, inherited.from);
+  } else {
+    inherited_.reset();
+  }
   if (key.bringing()) numbered_at_ = 0;
 }
 

@@ -1,4 +1,6 @@
 // The same scene and seed give the same hash in every new process, however it is played.
+#include <fmt/ranges.h>
+
 #include "app/determinism.h"
 
 namespace limber::app_test {

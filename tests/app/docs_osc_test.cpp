@@ -1,5 +1,6 @@
 // What docs/osc.md, docs/presets.md and docs/examples show works: each message of theirs is sent to a scene that has
 // what they name.
+#include <algorithm>
 #include <fstream>
 #include <iterator>
 #include <regex>

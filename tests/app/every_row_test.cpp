@@ -1,6 +1,8 @@
 // Every row through `--set`: the scene reads it back in its first callback.
 #include <sstream>
 
+#include <fmt/ranges.h>
+
 #include "app/program.h"
 #include "engine/every_row.h"
 #include "engine/show.h"

@@ -1,4 +1,5 @@
 // A room looks down, never up, never sideways, and each outside library is included by one room.
+#include <algorithm>
 #include <filesystem>
 #include <string>
 #include <vector>

@@ -1,6 +1,8 @@
 // What a client is told: the newest value where it is not what it knows, once, and never what it set itself.
 #include "engine/feed.h"
 
+#include <algorithm>
+
 #include <gtest/gtest.h>
 
 #include "engine/everything.h"

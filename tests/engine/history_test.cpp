@@ -2,6 +2,7 @@
 // said of it.
 #include "engine/history.h"
 
+#include <fmt/ranges.h>
 #include <gtest/gtest.h>
 
 #include "engine/behaviors.h"

@@ -1,6 +1,8 @@
 // A take that plays in the place of a show: it comes to the bit, and then the show goes on from there.
 #include "engine/taken.h"
 
+#include <algorithm>
+
 namespace limber::engine_test {
 namespace {
 

@@ -1,6 +1,7 @@
 // Shows that end badly, and the next start: what the performer had is there again.
 #include "engine/recovery_keeper.h"
 
+#include <algorithm>
 #include <filesystem>
 
 #include "engine/edited.h"

@@ -1,4 +1,6 @@
 // Twenty processes, one hash: every way to play in every surrounding.
+#include <fmt/ranges.h>
+
 #include "app/determinism.h"
 
 namespace limber::app_test {

@@ -1,6 +1,7 @@
 // Long tests of the fixed math functions: ten million arguments of each function, and all floats, against MPFR.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
 #include <atomic>
 #include <cmath>

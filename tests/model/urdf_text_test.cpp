@@ -1,6 +1,7 @@
 // The first look at a file's bytes: encodings, control characters, declarations, depth, cut-off ends.
 #include "model/urdf_text.h"
 
+#include <algorithm>
 #include <string>
 
 #include <gtest/gtest.h>

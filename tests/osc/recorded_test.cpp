@@ -2,6 +2,7 @@
 // again. Each file begins with the client's version and its command.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <fstream>
 

@@ -1,5 +1,9 @@
 // The seed's 52 addresses from a client's bytes to the world: each numeric type, with and without names, by pattern, by
 // path, in bundles; wrong ones are refused whole, counted and answered.
+#include <algorithm>
+
+#include <fmt/ranges.h>
+
 #include "engine/seed_table.h"
 #include "engine/show.h"
 #include "osc/bytes.h"

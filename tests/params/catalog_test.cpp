@@ -1,6 +1,8 @@
 // The catalog: addresses to places by exact path and by pattern.
 #include "params/catalog.h"
 
+#include <algorithm>
+
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 

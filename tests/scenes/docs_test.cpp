@@ -1,5 +1,6 @@
 // The pages of docs/ and the README: every block of Lua is played, every error shown is the one that is said, every
 // example of a message is understood.
+#include <algorithm>
 #include <array>
 #include <map>
 #include <regex>

@@ -1,4 +1,6 @@
 // Types of behaviors_lua/: where their files are found, what they declare, what is wrong with them.
+#include <algorithm>
+
 #include <gtest/gtest.h>
 
 #include "behavior_stage.h"

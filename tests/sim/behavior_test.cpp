@@ -1,6 +1,8 @@
 // What every behaviour has: targets, start, intervals, generator, errors, time.
 #include "sim/behavior.h"
 
+#include <algorithm>
+
 #include "sim/behavior_rig.h"
 
 namespace limber {

@@ -2,12 +2,16 @@
 #include "base/system/process.h"
 
 #include <dlfcn.h>
+#include <link.h>
 #include <signal.h>
 #include <sys/utsname.h>
 #include <unistd.h>
 
 #include <array>
 #include <cerrno>
+#include <cstddef>
+#include <string>
+#include <vector>
 
 namespace limber::system {
 
@@ -30,6 +34,23 @@ std::string machine_name() {
   return std::string(machine.sysname) + " " + machine.machine;
 }
 
-void* find_symbol(const char* name) { return dlsym(RTLD_DEFAULT, name); }
+void* find_symbol(const char* name) {
+  if (void* const found = dlsym(RTLD_DEFAULT, name)) return found;
+  // GLFW, since 3.4, and others load libraries whose symbols only they see
+  std::vector<std::string> libraries;
+  const auto add = [](dl_phdr_info* info, std::size_t, void* list) {
+    static_cast<std::vector<std::string>*>(list)->emplace_back(info->dlpi_name);
+    return 0;
+  };
+  dl_iterate_phdr(add, &libraries);
+  for (const std::string& library : libraries) {
+    void* const loaded = library.empty() ? nullptr : dlopen(library.c_str(), RTLD_LAZY | RTLD_NOLOAD);
+    if (loaded == nullptr) continue;
+    void* const found = dlsym(loaded, name);
+    dlclose(loaded);
+    if (found != nullptr) return found;
+  }
+  return nullptr;
+}
 
 }  // namespace limber::system

@@ -1,0 +1,29 @@
+// Functions of loaded libraries by name.
+#include <dlfcn.h>
+
+#include <gtest/gtest.h>
+
+#include "base/system/process.h"
+
+namespace limber {
+namespace {
+
+// a part of the C library that nothing here is linked with
+constexpr const char* kLibrary = "libthread_db.so.1";
+constexpr const char* kFunction = "td_ta_new";
+
+TEST(FindSymbol, FindsFunctionsOfTheProgramsLibraries) {
+  EXPECT_NE(system::find_symbol("malloc"), nullptr);
+  EXPECT_EQ(system::find_symbol("no_such_function_anywhere"), nullptr);
+}
+
+TEST(FindSymbol, FindsFunctionsOfLibrariesThatWereLoadedPrivately) {
+  ASSERT_EQ(system::find_symbol(kFunction), nullptr);
+  void* const library = dlopen(kLibrary, RTLD_LAZY | RTLD_LOCAL);
+  ASSERT_NE(library, nullptr) << dlerror();
+  EXPECT_EQ(system::find_symbol(kFunction), dlsym(library, kFunction));
+  dlclose(library);
+}
+
+}  // namespace
+}  // namespace limber
