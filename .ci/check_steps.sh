@@ -137,7 +137,27 @@ sanitizer_options() {
   export ASAN_OPTIONS=strict_string_checks=1:detect_stack_use_after_return=0:allocator_may_return_null=1
   export UBSAN_OPTIONS=print_stacktrace=1
   export TSAN_OPTIONS=halt_on_error=1:second_deadlock_stack=1:suppressions=$PWD/tests/tsan.supp
-  export ASAN_SYMBOLIZER_PATH=/usr/bin/llvm-symbolizer-14
+  ASAN_SYMBOLIZER_PATH=$(command -v "$(newest llvm-symbolizer)")
+  export ASAN_SYMBOLIZER_PATH
+}
+
+# the newest clang++ that comes with its sanitizers and libFuzzer
+clang() {
+  local found
+  for found in $(compgen -c clang++ | grep -xE 'clang\+\+(-[0-9]+)?' | sort -u -t- -k2 -rV); do
+    if echo 'extern "C" int LLVMFuzzerTestOneInput(const char*, unsigned long) { return 0; }' |
+      "$found" -fsanitize=address,undefined,fuzzer -x c++ - -o /dev/null 2>/dev/null; then
+      printf '%s' "$found"
+      return
+    fi
+  done
+  refuse 3 "there is no clang++ with sanitizers and libFuzzer in PATH." "apt-get install clang libclang-rt-dev"
+}
+
+configure_asan() {
+  local compiler
+  compiler=$(clang) || exit
+  configure asan build/asan "-DCMAKE_CXX_COMPILER=$compiler"
 }
 
 # at most 40 s of what `--long valgrind` does in full
@@ -148,7 +168,7 @@ step_valgrind() {
 
 step_asan() {
   sanitizer_options
-  configure asan build/asan
+  configure_asan
   local rooms=($(test_rooms $asan_leaves_out))
   build build/asan "${rooms[@]/#/test_}" && test_without=$asan_leaves_out_tests run_tests build/asan "${rooms[@]}"
 }
@@ -202,7 +222,7 @@ step_fuzz() {
   sanitizer_options
   names=$(fuzz_names)
   [ -n "$names" ] || { say "no fuzz targets"; return; }
-  [ -e build/asan/build.ninja ] || configure asan build/asan
+  [ -e build/asan/build.ninja ] || configure_asan
   build build/asan $names || return
   # libFuzzer writes to the first folder that it is given
   rm -rf build/check/fuzz_new
@@ -249,6 +269,11 @@ lint_groups() {
 step_style() {
   local log=build/check/format.log files
   git rev-parse --git-dir >/dev/null 2>&1 || { say "no git checkout: format and lint left out"; return; }
+  # another version formats differently and warns of other things
+  if ! command -v clang-format-14 >/dev/null || ! command -v clang-tidy-14 >/dev/null; then
+    say "no clang-format-14 and clang-tidy-14 (Debian 12 has them): format and lint left out"
+    return
+  fi
   if cpp_files | xargs -r clang-format-14 --dry-run -Werror >"$log" 2>&1; then pass; else
     fail "format; cure: clang-format-14 -i on $(sed -n 's/^\([^:]*\):.*error:.*/\1/p' "$log" | sort -u | tr '\n' ' ')"
   fi

@@ -30,7 +30,7 @@ fault_build() {
   local kind=$1 folder=$PWD/$copy/build/$1 options=()
   shift
   case $kind in
-    asan) options=(-DLIMBER_SANITIZE=address -DCMAKE_CXX_COMPILER=clang++-14) ;;
+    asan) options=(-DLIMBER_SANITIZE=address "-DCMAKE_CXX_COMPILER=$(clang)") ;;
     tsan) options=(-DLIMBER_SANITIZE=thread) ;;
   esac
   if [ ! -e "$folder/build.ninja" ]; then

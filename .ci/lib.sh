@@ -14,14 +14,33 @@ refuse() {
 
 # the distribution's name and number, as it calls itself
 system_name() { (. "${LIMBER_OS_RELEASE:-/etc/os-release}" 2>/dev/null && printf '%s' "${PRETTY_NAME:-$ID}") || uname -s; }
-is_debian_12() { (. "${LIMBER_OS_RELEASE:-/etc/os-release}" 2>/dev/null && [ "$ID" = debian ] && [ "$VERSION_ID" = 12 ]); }
 
-# package_rows PURPOSE...: lines "package kind sign" of .ci/packages
+# the release, as .ci/packages names it: 12 and 13 are Debian's, on which everything is tested; other
+release() {
+  local word
+  word=$( (. "${LIMBER_OS_RELEASE:-/etc/os-release}" 2>/dev/null && [ "$ID" = debian ] && printf '%s' "${VERSION_ID-}"))
+  case $word in 12 | 13) printf '%s' "$word" ;; *) printf other ;; esac
+}
+is_tested() { [ "$(release)" != other ]; }
+
+introduce() {
+  if is_tested; then say "Limber on $(system_name)"; else
+    say "Limber on $(system_name): untested (Debian 12 and 13 are tested), trying"
+  fi
+}
+
+# package_rows STEP...: lines "package kind sign" of .ci/packages for these steps on this release
 package_rows() {
-  local purpose package kind sign
-  while read -r purpose package kind sign; do
-    case " $* " in *" $purpose "*) printf '%s %s %s\n' "$package" "$kind" "$sign" ;; esac
-  done <.ci/packages
+  local column package kind sign here step steps releases
+  here=$(release)
+  while read -r column package kind sign; do
+    steps=${column%%@*} releases=
+    case $column in '' | \#*) continue ;; *@*) releases=${column#*@} ;; esac
+    case ",$releases," in ,, | *",$here,"*) ;; *) continue ;; esac
+    for step; do
+      case ",$steps," in *",$step,"*) printf '%s %s %s\n' "$package" "$kind" "$sign"; break ;; esac
+    done
+  done <.ci/packages | awk '!known[$1]++'
 }
 
 # is anything there that answers to this kind of sign, however it came
@@ -51,12 +70,25 @@ missing_packages() {
   fi
 }
 
-# asks when not root, then installs with apt
+# removed_packages PACKAGE...: what apt would remove in order to install these
+removed_packages() {
+  LC_ALL=C apt-get -s install --no-install-recommends "$@" </dev/null 2>/dev/null | awk '$1 == "Remv" { printf "%s ", $2 }'
+}
+
+# nothing that is installed may be removed
+refuse_removal() {
+  local removed
+  removed=$(removed_packages "$@")
+  [ -z "$removed" ] || refuse 3 "apt would remove packages in order to install $*: ${removed% }. Nothing was changed." \
+    "look at 'apt-get -s install --no-install-recommends $*'; if you can do without them, install these by hand, then call $tool again."
+}
+
+# asks when not root, then installs with apt, which removes nothing
 install_packages() {
   local packages="$*" root=() answer log
   command -v apt-get >/dev/null ||
     refuse 3 "this system has no apt, so nothing can be installed from here; not found: $packages" \
-      "install them under the names your system gives them (these are Debian 12's), then call $tool again."
+      "install them under the names your system gives them (these are Debian's), then call $tool again."
   if [ "$(id -u)" != 0 ]; then
     command -v sudo >/dev/null ||
       refuse 3 "packages are missing, this is not root, and there is no sudo." \
@@ -75,7 +107,8 @@ install_packages() {
   # an old list is no reason to stop when the packages are in the cache, so only installing decides
   "${root[@]}" apt-get update -qq -o APT::Update::Error-Mode=any -o Acquire::Retries=2 -o Acquire::http::Timeout=20 \
     </dev/null >"$log" 2>&1 || say "apt could not refresh its lists, trying with the old ones"
-  "${root[@]}" env DEBIAN_FRONTEND=noninteractive apt-get install -y --no-install-recommends \
+  refuse_removal $packages
+  "${root[@]}" env DEBIAN_FRONTEND=noninteractive apt-get install -y --no-install-recommends --no-remove \
     -o DPkg::Lock::Timeout=120 -o Acquire::Retries=2 -o Acquire::http::Timeout=20 $packages </dev/null 2>&1 |
     tee -a "$log" | sed -un 's/^\(Need to get .*\|Setting up [^ ]*\).*/  \1/p'
   if [ "${PIPESTATUS[0]}" != 0 ]; then
@@ -115,7 +148,16 @@ jobs() {
   echo $((cores < memory ? cores : memory))
 }
 
-# configure PRESET FOLDER OPTIONS...: quick when it was done before; a checkout that moved starts afresh
+# newest PROGRAM: the newest version in PATH, such as clang++-19 for clang++; fails when there is none
+newest() {
+  local found
+  found=$(compgen -c "$1-" | grep -xE "${1//+/\\+}-[0-9]+" | sort -t- -k2 -V | tail -n 1)
+  found=${found:-$1}
+  command -v "$found" >/dev/null && printf '%s' "$found"
+}
+
+# configure PRESET FOLDER OPTIONS...: quick when it was done before; a checkout that moved starts afresh. Warnings are
+# errors where the caller sets `werror` to ON
 configure() {
   local preset=$1 folder=$2 log
   shift 2
@@ -126,7 +168,7 @@ configure() {
     rm -rf "$folder/CMakeCache.txt" "$folder/CMakeFiles"
   fi
   log=$folder/configure.log
-  if ! cmake --preset "$preset" "$@" </dev/null >"$log" 2>&1; then
+  if ! cmake --preset "$preset" "-DLIMBER_WERROR=${werror:-OFF}" "$@" </dev/null >"$log" 2>&1; then
     grep -A6 -E 'CMake Error' "$log" | head -20 >&2
     refuse 3 "configuring the build failed (whole output: $log)." "mend what is said above, or remove $folder and call $tool again."
   fi

@@ -47,7 +47,7 @@ step_long() {
 
 # what one finds stays in build/check/fuzz/NAME, where the next run begins
 fuzz_at_length() {
-  [ -e build/asan/build.ninja ] || configure asan build/asan
+  [ -e build/asan/build.ninja ] || configure_asan
   build build/asan "$1" || return
   case $1 in
     osc*) run_fuzz "$1" -runs=10000000 -max_total_time=3600 "build/check/fuzz/$1" ;;

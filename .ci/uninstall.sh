@@ -22,6 +22,6 @@ uninstall() {
     "${root[@]}" env DEBIAN_FRONTEND=noninteractive apt-get remove -y $packages </dev/null >/dev/null ||
       refuse 3 "apt could not remove the packages; nothing else was removed." "mend what apt says above, and call it again."
   fi
-  rm -rf "${folders[@]}"
+  rm -rf --one-file-system "${folders[@]}"
   say "removed; the checkout itself is yours to delete: $PWD"
 }

@@ -7,6 +7,7 @@
 #include <fstream>
 #include <iterator>
 #include <string>
+#include <vector>
 
 #include <gtest/gtest.h>
 
@@ -30,9 +31,9 @@ class CheckTree {
           "# --long pear: fails\nlong_pear() { echo pear >>build/calls; fail pear; }\n"
           "# --long plum: passes\nlong_plum() { echo plum >>build/calls; pass; }\n");
     // every package is installed
-    write("bin/dpkg-query", "#!/bin/sh\nshift 2; for p in \"$@\"; do echo \"ii $p \"; done\n");
-    write("bin/g++", "#!/bin/sh\necho 12\n");
-    for (const char* program : {"dpkg-query", "g++"}) fs::permissions(root_ / "bin" / program, fs::perms::owner_all);
+    program("dpkg-query", "shift 2; for p in \"$@\"; do echo \"ii $p \"; done");
+    program("g++", "echo 12");
+    write("bin/os-release", "ID=debian\nVERSION_ID=12\nPRETTY_NAME='Debian GNU/Linux 12'\n");
     commit();
   }
   ~CheckTree() { fs::remove_all(root_); }
@@ -46,9 +47,14 @@ class CheckTree {
         "-qm all --allow-empty");
   }
 
+  void program(const std::string& name, const std::string& body) const {
+    write("bin/" + name, "#!/bin/sh\n" + body + "\n");
+    fs::permissions(root_ / "bin" / name, fs::perms::owner_all);
+  }
+
   int check(const std::string& arguments) {
     fs::remove(root_ / "build/calls");
-    const int code = shell("PATH=\"$PWD/bin:$PATH\" ./check " + arguments);
+    const int code = shell("PATH=\"$PWD/bin:$PATH\" LIMBER_OS_RELEASE=bin/os-release ./check " + arguments);
     text = read("bin/out");
     calls = read("build/calls");
     return code;
@@ -99,6 +105,46 @@ TEST(Check, RejectsUnknownLongParts) {
   EXPECT_EQ(tree.calls, "");
   EXPECT_NE(tree.text.find("check: 'cherry' is no part of --long."), std::string::npos) << tree.text;
   EXPECT_NE(tree.text.find("cure: ./check --help lists them."), std::string::npos) << tree.text;
+}
+
+/// Packages that ./check asks apt for, on a machine of this release that has none.
+std::string packages_of(CheckTree& tree, const std::string& arguments, const std::string& os_release) {
+  tree.write("bin/os-release", os_release);
+  tree.program("dpkg-query", "exit 1");
+  tree.program("id", "echo 0");
+  tree.program(
+      "apt-get",
+      "[ $1 = -s ] || exit 0\nmkdir -p build\necho \"$* \" | tr '\\n' ' ' >>build/calls\necho Remv everything");
+  EXPECT_EQ(tree.check(arguments), 3) << tree.text;
+  return tree.calls;
+}
+
+TEST(Check, InstallsThePackagesOfItsStepsAndRelease) {
+  CheckTree tree;
+  const std::string debian_12 = "ID=debian\nVERSION_ID=12\n";
+  const std::string debian_13 = "ID=debian\nVERSION_ID=13\n";
+  const auto has = [](const std::string& list, const std::string& package) {
+    return list.find(" " + package + " ") != std::string::npos;
+  };
+  struct Case {
+    const char* arguments;
+    std::string system;
+    std::vector<std::string> with, without;
+  };
+  const Case cases[] = {
+      {"--only asan", debian_12, {"g++", "libgtest-dev", "clang-14"}, {"clang", "valgrind", "clang-format-14"}},
+      {"--only asan", debian_13, {"g++", "libgtest-dev", "clang", "libclang-rt-dev"}, {"clang-14", "valgrind"}},
+      {"--only asan", "ID=ubuntu\nVERSION_ID=13\n", {"g++", "clang"}, {"clang-14"}},
+      {"--only style", debian_12, {"clang-format-14", "clang-tidy-14"}, {"clang-14", "valgrind"}},
+      {"--only style", debian_13, {"git"}, {"clang-format-14", "clang-tidy-14"}},
+      {"--only valgrind", debian_13, {"valgrind"}, {"clang", "debootstrap"}},
+      {"--long apple", debian_12, {"debootstrap", "valgrind", "clang-14"}, {"clang"}},
+  };
+  for (const Case& c : cases) {
+    const std::string packages = packages_of(tree, c.arguments, c.system);
+    for (const std::string& p : c.with) EXPECT_TRUE(has(packages, p)) << p << c.arguments << c.system << packages;
+    for (const std::string& p : c.without) EXPECT_FALSE(has(packages, p)) << p << c.arguments << c.system << packages;
+  }
 }
 
 TEST(Check, HelpListsTheLongParts) {

@@ -95,7 +95,9 @@ TEST(Run, BuildsAndPlaysAndSaysWhereItIs) {
   EXPECT_EQ(first.code, 0) << first.text;
   EXPECT_TRUE(first.text.starts_with("run: Limber on Debian GNU/Linux 12\n")) << first.text;
   EXPECT_TRUE(first.text.ends_with("limber play scripts/hello.lua --fast\n")) << first.text;
-  EXPECT_EQ(first.calls, "cmake --preset release -DLIMBER_TESTS=OFF\ncmake --build build --target limber -j 2\n");
+  EXPECT_EQ(
+      first.calls,
+      "cmake --preset release -DLIMBER_WERROR=OFF -DLIMBER_TESTS=OFF\ncmake --build build --target limber -j 2\n");
 }
 
 TEST(Run, SecondTimeNeitherConfiguresNorCallsApt) {
@@ -179,7 +181,34 @@ TEST(Run, TriesOnForeignSystemsAndSaysSo) {
   machine.write("os-release", "ID=ubuntu\nVERSION_ID=24.04\nPRETTY_NAME='Ubuntu 24.04'\n");
   const Answer answer = machine.run();
   EXPECT_EQ(answer.code, 0);
-  EXPECT_TRUE(answer.text.starts_with("run: Limber on Ubuntu 24.04: untested (Debian 12 is), trying\n")) << answer.text;
+  EXPECT_TRUE(answer.text.starts_with("run: Limber on Ubuntu 24.04: untested (Debian 12 and 13 are tested), trying\n"))
+      << answer.text;
+}
+
+TEST(Run, Debian13IsTested) {
+  const Machine machine;
+  machine.write("os-release", "ID=debian\nVERSION_ID=13\nPRETTY_NAME='Debian GNU/Linux 13 (trixie)'\n");
+  const Answer answer = machine.run();
+  EXPECT_EQ(answer.code, 0);
+  EXPECT_TRUE(answer.text.starts_with("run: Limber on Debian GNU/Linux 13 (trixie)\n")) << answer.text;
+}
+
+TEST(Run, NeverLetsAptRemovePackages) {
+  const Machine machine;
+  machine.nothing_installed();
+  machine.program(
+      "apt-get",
+      "echo apt-get \"$@\" >>\"$CALLS\"\n"
+      "case $1 in -s) echo 'Inst cmake (3.25)'; echo 'Remv browser [1.0]'; echo 'Remv editor [2.0]' ;; esac");
+  const Answer answer = machine.run();
+  EXPECT_EQ(answer.code, 3) << answer.text;
+  EXPECT_NE(answer.text.find("run: apt would remove packages in order to install g++ cmake "), std::string::npos)
+      << answer.text;
+  EXPECT_NE(answer.text.find(": browser editor. Nothing was changed."), std::string::npos) << answer.text;
+  EXPECT_EQ(answer.calls.find("apt-get install"), std::string::npos) << answer.calls;
+  // if the package lists change between the simulation and the installation, apt itself has to stop
+  machine.program("apt-get", "echo apt-get \"$@\" >>\"$CALLS\"");
+  EXPECT_NE(machine.run().calls.find("apt-get install -y --no-install-recommends --no-remove "), std::string::npos);
 }
 
 TEST(Run, StartsAfreshWhenTheCheckoutHasMoved) {
@@ -262,6 +291,12 @@ const Refusal kRefusals[] = {
     {"build_fails",
      [](const Machine& m) { m.program("cmake", "case $1 in --build) exit 1 ;; esac; : >build/build.ninja"); },
      "the build failed", "on a full disk"},
+    {"build_fails_elsewhere",
+     [](const Machine& m) {
+       m.write("os-release", "ID=ubuntu\nVERSION_ID=24.04\nPRETTY_NAME='Ubuntu 24.04'\n");
+       m.program("cmake", "case $1 in --build) exit 1 ;; esac; : >build/build.ninja");
+     },
+     "the build failed on Ubuntu 24.04, an untested system", "report that error"},
 };
 INSTANTIATE_TEST_SUITE_P(Run, Refusals, testing::ValuesIn(kRefusals),
                          [](const testing::TestParamInfo<Refusal>& info) { return std::string(info.param.name); });
