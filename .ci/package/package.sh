@@ -22,8 +22,9 @@ release_tag() {
 # when the sources were committed, in seconds; packages of the same sources are the same
 source_time() {
   local time=${SOURCE_DATE_EPOCH-}
-  [ -n "$time" ] || time=$(git log -1 --format=%ct 2>/dev/null) ||
-    time=$(sed -n 's/^time: \([0-9]*\)$/\1/p' .git_archival.txt 2>/dev/null)
+  # in a checkout this file has no time
+  [ -n "$time" ] || time=$(sed -n 's/^time: \([0-9][0-9]*\)$/\1/p' .git_archival.txt 2>/dev/null)
+  [ -n "$time" ] || time=$(git log -1 --format=%ct 2>/dev/null)
   printf '%s' "${time:-$(date -r CHANGELOG.md +%s)}"
 }
 
