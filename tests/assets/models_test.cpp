@@ -6,6 +6,7 @@
 #include <memory>
 #include <set>
 #include <string>
+#include <string_view>
 #include <tuple>
 #include <utility>
 #include <vector>
@@ -53,7 +54,7 @@ ModelPtr load(const std::string& name) {
   return result.ok() ? result.value() : std::make_shared<const BodyModel>();
 }
 
-int link_index(const BodyModel& model, const std::string& name) {
+int link_index(const BodyModel& model, std::string_view name) {
   for (std::size_t i = 0; i < model.links.size(); ++i) {
     if (model.links[i].name == name) return static_cast<int>(i);
   }
@@ -61,11 +62,11 @@ int link_index(const BodyModel& model, const std::string& name) {
   return 0;
 }
 
-const LinkModel& link_named(const BodyModel& model, const std::string& name) {
+const LinkModel& link_named(const BodyModel& model, std::string_view name) {
   return model.links[static_cast<std::size_t>(link_index(model, name))];
 }
 
-const JointModel& joint_named(const BodyModel& model, const std::string& name) {
+const JointModel& joint_named(const BodyModel& model, std::string_view name) {
   for (const JointModel& joint : model.joints) {
     if (joint.name == name) return joint;
   }

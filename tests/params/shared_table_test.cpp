@@ -14,11 +14,11 @@ std::vector<Row> two_rows() {
 }
 
 TEST(SharedTable, EqualOnesAreOne) {
-  const Table& table = shared_table("thing", "/things/<thing>", two_rows());
-  EXPECT_EQ(&shared_table("thing", "/things/<thing>", two_rows()), &table);
-  EXPECT_EQ(table.kept_width(), 2U);
-  EXPECT_NE(&shared_table("other", "/things/<thing>", two_rows()), &table);
-  EXPECT_NE(&shared_table("thing", "/others/<thing>", two_rows()), &table);
+  const Table* const table = &shared_table("thing", "/things/<thing>", two_rows());
+  EXPECT_EQ(&shared_table("thing", "/things/<thing>", two_rows()), table);
+  EXPECT_EQ(table->kept_width(), 2U);
+  EXPECT_NE(&shared_table("other", "/things/<thing>", two_rows()), table);
+  EXPECT_NE(&shared_table("thing", "/others/<thing>", two_rows()), table);
 }
 
 TEST(SharedTable, WhateverDiffersInARowMakesAnother) {
