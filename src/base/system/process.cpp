@@ -3,12 +3,12 @@
 
 #include <dlfcn.h>
 #include <link.h>
-#include <signal.h>
 #include <sys/utsname.h>
 #include <unistd.h>
 
 #include <array>
 #include <cerrno>
+#include <csignal>
 #include <cstddef>
 #include <string>
 #include <vector>
