@@ -103,7 +103,8 @@ int doctor_command(const DoctorCommand& command) {
 
   finding("ok", "limber", fmt::format("{} ({})", version(), commit()));
   finding("ok", "system",
-          fmt::format("{}, {}, {} cores", system_name(), system::machine_name(), std::thread::hardware_concurrency()));
+          fmt::format("{}, {}, {} cores{}", system_name(), system::machine_name(), std::thread::hardware_concurrency(),
+                      system::is_portable() ? "; built with POSIX calls only" : ""));
 
   const bool exact = fixed::is_arithmetic_exact() && fixed::is_libm_replaced();
   finding(exact ? "ok" : "no", "arithmetic",

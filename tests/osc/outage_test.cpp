@@ -37,6 +37,12 @@ bool unreachable(const void* to) {
 extern "C" ssize_t sendto(int fd, const void* data, size_t size, int flags, const sockaddr* to, socklen_t length) {
   return unreachable(to) ? -1 : syscall(SYS_sendto, fd, data, size, flags, to, length);
 }
+extern "C" ssize_t send(int fd, const void* data, size_t size, int flags) {
+  sockaddr_in peer{};
+  socklen_t length = sizeof peer;
+  const bool connected = getpeername(fd, reinterpret_cast<sockaddr*>(&peer), &length) == 0;
+  return connected && unreachable(&peer) ? -1 : syscall(SYS_sendto, fd, data, size, flags, nullptr, 0);
+}
 extern "C" int sendmmsg(int fd, mmsghdr* messages, unsigned count, int flags) {
   if (count > 0 && unreachable(messages[0].msg_hdr.msg_name)) return -1;
   return static_cast<int>(syscall(SYS_sendmmsg, fd, messages, count, flags));

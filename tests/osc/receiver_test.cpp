@@ -249,9 +249,14 @@ TEST(Receiver, KernelDropsAreCounted) {
   client.send(desk.receiver.bound().at(0), numbered(500));
   desk.receiver.receive(fd);
   const std::uint64_t lost = desk.engine.link.counters.dropped_kernel;
+  log_to_stderr(true);
+  if (system::is_portable()) {
+    EXPECT_LT(desk.numbers().size(), 501u);
+    EXPECT_EQ(lost, 0u) << "POSIX does not count them";
+    return;
+  }
   EXPECT_GT(lost, 0u);
   EXPECT_EQ(desk.numbers().size() + lost, 501u);
-  log_to_stderr(true);
 }
 
 }  // namespace

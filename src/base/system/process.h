@@ -21,6 +21,9 @@ std::string host_name();
 /// The kernel and the processor: "Linux x86_64".
 std::string machine_name();
 
+/// Whether this build makes POSIX calls only (LIMBER_PORTABLE), on Linux too.
+bool is_portable();
+
 /// The processor's model; empty where the system does not name it.
 std::string processor_name();
 

@@ -7,6 +7,8 @@
 
 namespace limber::system {
 
+bool is_portable() { return false; }
+
 std::string processor_name() {
   std::ifstream info("/proc/cpuinfo");
   for (std::string line; std::getline(info, line);) {

@@ -3,6 +3,8 @@
 
 namespace limber::system {
 
+bool is_portable() { return true; }
+
 std::string processor_name() { return {}; }
 
 double heap_bytes() { return 0; }

@@ -73,6 +73,7 @@ void UdpSender::close() { state_.reset(); }
 
 int UdpSender::send(const Endpoint& to, std::span<const char> packet) {
   if (state_ == nullptr) return EBADF;
+  if (to.port == 0) return EINVAL;  // which connect() takes
   const int fd = state_->socket_to(to);
   if (fd < 0) return errno;
   const auto send = [&] { return ::send(fd, packet.data(), packet.size(), MSG_DONTWAIT | kNoSignal) >= 0; };
