@@ -9,6 +9,7 @@
 #include <iterator>
 
 #include "base/log.h"
+#include "base/system/process.h"
 #include "osc/bad_packets.h"
 
 namespace limber {
