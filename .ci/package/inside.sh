@@ -28,12 +28,13 @@ hash_is_expected() { [ "$("$@" $play 2>play.err | tail -n 1)" = "$(cat expected)
 is_clean() { "$@" 2>&1 | tee clean.out; [ ! -s clean.out ]; }
 no_missing_library() { ! ldd "$1" | grep 'not found'; }
 
+# what draws has another home: it saves the window's settings, and Mesa's driver its shaders
 # a still, by software: a picture, not one color
 draws() {
   rm -f still.png
-  "$@" play --screenshot still.png --at 1 --size 640x360 && [ "$(stat -c %s still.png)" -gt 20000 ]
+  HOME=/home/other "$@" play --screenshot still.png --at 1 --size 640x360 && [ "$(stat -c %s still.png)" -gt 20000 ]
 }
-# plays in a window for two simulated seconds; another home, since the window's settings are saved at the end
+# plays in a window for two simulated seconds
 shows_a_window() { HOME=/home/other xvfb-run -a -s '-screen 0 1280x800x24' "$@" play --duration 2 --osc-in off --osc-out off --query off --strict; }
 
 # ---- the archive, in a system that has no other packages
@@ -72,7 +73,12 @@ check version_is_the_packages test "$(limber --version | cut -d' ' -f2)" = "$(dp
 check installs_tools install_debian $(cat tools)
 check lintian lintian --allow-root --fail-on error,warning "$deb"
 check desktop_file is_clean desktop-file-validate /usr/share/applications/limber.desktop
-check appstream appstreamcli validate --no-net --explain /usr/share/metainfo/org.limber.limber.metainfo.xml
+# without a home page, see lintian-overrides; the appstreamcli of Debian 12 does not know that tag
+appstream_data() {
+  local file=/usr/share/metainfo/org.limber.limber.metainfo.xml
+  appstreamcli validate --no-net --explain $file || appstreamcli validate --no-net --override=url-homepage-missing=info $file
+}
+check appstream appstream_data
 check man_page_renders is_clean sh -c 'man --warnings -E UTF-8 -l -Tutf8 -Z /usr/share/man/man1/limber.1.gz >man.out'
 check man_finds_it sh -c 'man -w limber && man limber | grep -q "live simulator"'
 check md5sums dpkg --verify limber

@@ -146,7 +146,8 @@ debian_documents() {
   # the page of licenses leads to the license, which is in this file here
   sed -i 's|"../LICENSE"|"../copyright"|g' "$doc/html/licences.html"
   gzip -9n "$doc/changelog" "$doc/changelog.Debian" "$1/usr/share/man/man1/limber.1"
-  mkdir -p "$1/usr/share/doc-base"
+  mkdir -p "$1/usr/share/doc-base" "$1/usr/share/lintian/overrides"
+  cp .ci/package/lintian-overrides "$1/usr/share/lintian/overrides/limber"
   cp .ci/package/doc-base "$1/usr/share/doc-base/limber.limber"
   # where Debian's zsh looks
   mkdir -p "$1/usr/share/zsh/vendor-completions"
