@@ -33,11 +33,6 @@ constexpr std::uint32_t kNone = ~std::uint32_t{0};
 // places sooner, and a small one takes no more than it needs.
 constexpr std::size_t kLargePage = std::size_t{2} << 20;
 
-std::byte* at_large_page(std::byte* place) {
-  const std::uintptr_t least = reinterpret_cast<std::uintptr_t>(place) + kLargePage - 1;
-  return place + (least / kLargePage * kLargePage - reinterpret_cast<std::uintptr_t>(place));
-}
-
 // 1 .. kKinds
 std::uint32_t kind_of(std::size_t size) {
   if (size <= kFine) return size == 0 ? 1 : static_cast<std::uint32_t>((size + kGrain - 1) / kGrain);
@@ -85,29 +80,32 @@ void show_to_leak_search([[maybe_unused]] void* begin, [[maybe_unused]] bool sho
 
 }  // namespace
 
-Arena::Arena() {
+Arena::Arena(AddressSpace& space) : space_(space) {
   static_assert(sizeof(Head) <= kHeadSize && sizeof(Chunk) == 32);
-  std::byte* const begin = system::reserve_memory(kReserve);
+  std::byte* const begin = space.reserve(kReserve);
   if (begin == nullptr) return;
+  // what is opened later begins at a page, so the data do
   constexpr std::size_t kTable = (kReserve / kChunk * sizeof(Chunk) + kHeadSize + kChunk - 1) / kChunk * kChunk;
-  if (!system::commit_memory(begin, kTable)) {
-    system::release_memory(begin, kReserve);
+  std::byte* const data = next_page(begin + kTable, space.page());
+  if (!space.open(begin, static_cast<std::size_t>(data - begin))) {
+    space.release(begin, kReserve);
     return;
   }
   show_to_leak_search(begin, true);
   head_ = new (begin) Head;
   head_->open.fill(kNone);
   chunks_ = reinterpret_cast<Chunk*>(begin + kHeadSize);
-  data_ = begin + kTable;
-  std::byte* const large = at_large_page(data_ + kLargePage);
+  data_ = data;
+  std::byte* const large = next_page(data_ + kLargePage, kLargePage);
   // a wish: without it all is the same
   system::prefer_large_pages(large, static_cast<std::size_t>(begin + kReserve - large));
 }
 
 Arena::~Arena() {
   if (head_ == nullptr) return;
-  show_to_leak_search(static_cast<void*>(head_), false);
-  system::release_memory(reinterpret_cast<std::byte*>(head_), kReserve);
+  auto* const begin = reinterpret_cast<std::byte*>(head_);
+  show_to_leak_search(begin, false);
+  space_.release(begin, kReserve);
 }
 
 std::byte* Arena::data_of(std::uint32_t chunk) const { return data_ + std::size_t{chunk} * kChunk; }
@@ -152,10 +150,10 @@ std::uint32_t Arena::take_chunks(std::uint32_t count) {
   const std::size_t most = (kReserve - static_cast<std::size_t>(data_ - reinterpret_cast<std::byte*>(head_))) / kChunk;
   if (end > most) return kNone;
   if (end > head.ready) {
-    // up to the end of a large page: it is given whole or not at all
-    const auto whole = static_cast<std::size_t>(at_large_page(data_of(end)) - data_);
+    // up to the end of a large page: it is given whole or not at all, and what is opened next begins at a page
+    const auto whole = static_cast<std::size_t>(next_page(data_of(end), kLargePage) - data_);
     const auto ready = static_cast<std::uint32_t>(std::min(most, (whole + kChunk - 1) / kChunk));
-    if (!system::commit_memory(data_of(head.ready), std::size_t{ready - head.ready} * kChunk)) return kNone;
+    if (!space_.open(data_of(head.ready), std::size_t{ready - head.ready} * kChunk)) return kNone;
     head.ready = ready;
   }
   for (std::uint32_t at = head.count; at < end; at++) new (&chunks_[at]) Chunk;

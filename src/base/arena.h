@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 
+#include "base/address_space.h"
 #include "base/page_store.h"
 
 namespace limber {
@@ -13,7 +14,7 @@ class Arena {
  public:
   static constexpr std::size_t kReserve = std::size_t{2} << 30;  ///< Of addresses; memory is taken as it is used.
 
-  Arena();
+  explicit Arena(AddressSpace& space = AddressSpace::of_system());
   ~Arena();
   Arena(const Arena&) = delete;
   Arena& operator=(const Arena&) = delete;
@@ -43,6 +44,7 @@ class Arena {
   std::byte* data_of(std::uint32_t chunk) const;
   std::uint32_t chunk_of(const void* block) const;
 
+  AddressSpace& space_;
   Head* head_ = nullptr;
   Chunk* chunks_ = nullptr;
   std::byte* data_ = nullptr;

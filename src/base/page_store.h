@@ -1,4 +1,4 @@
-// PageStore: copies of memory in pages of 4 KiB. Copies of the same memory share the pages that did not change between
+// PageStore: copies of memory in pages of 4 KiB, whatever the size of the system's pages. Copies of the same memory share the pages that did not change between
 // them, so that thirty of them take little more than what moves. Its room is used again.
 #pragma once
 

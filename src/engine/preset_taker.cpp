@@ -6,6 +6,7 @@
 #include <system_error>
 #include <utility>
 
+#include "base/address_space.h"
 #include "base/system/thread.h"
 #include "base/system/virtual_memory.h"
 #include "params/catalog.h"
@@ -18,15 +19,14 @@ constexpr std::size_t kMostPlans = 8;
 // What comes takes far more of its tick than a look at it: where this part of all came or went, all is looked at.
 constexpr std::uint64_t kMuch = 8;
 
-// many megabytes that are touched for the first time would be a fault every 4 KB; without large pages it goes as well
+// many megabytes that are touched for the first time would be a fault in every page; without large pages it works too
 void ask_for_large_pages(const std::vector<double>& room) {
-  constexpr std::uintptr_t kPage = 4096;
   constexpr std::size_t kLarge = std::size_t{4} << 20u;
   const std::size_t bytes = room.capacity() * sizeof(double);
   if (bytes < kLarge) return;
+  const std::size_t page = system::page_size();
   auto* const first = const_cast<std::byte*>(reinterpret_cast<const std::byte*>(room.data()));
-  const std::size_t skipped = (kPage - reinterpret_cast<std::uintptr_t>(first) % kPage) % kPage;
-  system::prefer_large_pages(first + skipped, bytes - kPage);
+  system::prefer_large_pages(next_page(first, page), bytes - page);
 }
 
 }  // namespace

@@ -102,6 +102,57 @@ TEST(Arena, EndsWithoutMore) {
   EXPECT_NE(arena.allocate(Arena::kReserve / 2), nullptr);
 }
 
+// the system's memory, with pages of another size: what begins in the middle of one is rejected, as the system does
+class OtherPages : public AddressSpace {
+ public:
+  explicit OtherPages(std::size_t page) : page_(page) {}
+  std::size_t page() const override { return page_; }
+  bool open(std::byte* begin, std::size_t size) override {
+    opened++;
+    if (reinterpret_cast<std::uintptr_t>(begin) % page_ != 0) return false;
+    // all of the last page
+    return AddressSpace::open(begin, (size + page_ - 1) / page_ * page_);
+  }
+  void release(std::byte* begin, std::size_t size) override { AddressSpace::release(begin - offset_, size + page_); }
+  int opened = 0;
+
+ protected:
+  std::byte* map(std::uintptr_t wish, std::size_t size) override {
+    std::byte* const got = AddressSpace::map(wish, size + page_);
+    offset_ = static_cast<std::size_t>(next_page(got, page_) - got);
+    return got + offset_;
+  }
+
+ private:
+  std::size_t page_;
+  std::size_t offset_ = 0;
+};
+
+class PageSizes : public testing::TestWithParam<std::size_t> {};
+
+TEST_P(PageSizes, ArenasWorkAndBringBackTheirImages) {
+  OtherPages space(GetParam());
+  Arena arena(space);
+  ASSERT_TRUE(arena.exists());
+  LivingBlocks blocks;
+  Random random(3, "arena");
+  live_on(arena, blocks, random, 1000);
+  PageStore pages;
+  PageStore::Image image;
+  arena.copy(pages, nullptr, image);
+  LivingBlocks later = blocks;
+  live_on(arena, later, random, 1000);
+  expect_whole(later);
+  arena.bring_back(pages, image);
+  expect_whole(blocks);
+  // to the end of the arena, in steps that open more of it
+  while (void* const block = arena.allocate(std::size_t{50} << 20)) std::memset(block, 1, 1);
+  EXPECT_GT(space.opened, 30);
+}
+
+INSTANTIATE_TEST_SUITE_P(KiB, PageSizes, testing::Values(4096, 16384, 65536),
+                         [](const auto& info) { return std::to_string(info.param / 1024); });
+
 #ifdef LIMBER_WATCHES_ADDRESSES
 // where nothing else knows of it, neither a register nor what is left on the stack
 [[gnu::noinline]] void keep_something(int** at) { *at = new int[1000]; }

@@ -4,6 +4,7 @@
 #include <fstream>
 #include <string>
 
+#include "base/system/virtual_memory.h"
 #include "engine/show.h"
 
 namespace limber {
@@ -48,7 +49,7 @@ double resident() {
   double all = 0;
   double mine = 0;
   statm >> all >> mine;
-  return mine * 4096;
+  return mine * static_cast<double>(system::page_size());
 }
 
 TEST(Soak, MemoryIsFlatFromTheTenthMinuteOfAnHour) {

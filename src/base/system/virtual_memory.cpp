@@ -2,11 +2,19 @@
 #include "base/system/virtual_memory.h"
 
 #include <sys/mman.h>
+#include <unistd.h>
 
 namespace limber::system {
 
-std::byte* reserve_memory(std::size_t bytes) {
-  void* const got = mmap(nullptr, bytes, PROT_NONE, MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);
+std::size_t page_size() {
+  static const auto bytes = static_cast<std::size_t>(sysconf(_SC_PAGESIZE));
+  return bytes;
+}
+
+std::byte* reserve_memory(std::size_t bytes, std::uintptr_t wish) {
+  // NOLINTNEXTLINE(performance-no-int-to-ptr): an address that nothing has yet
+  void* const got =
+      mmap(reinterpret_cast<void*>(wish), bytes, PROT_NONE, MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);
   return got == MAP_FAILED ? nullptr : static_cast<std::byte*>(got);
 }
 

@@ -2,12 +2,18 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 
 namespace limber::system {
 
-/// Reserves addresses without memory; null: the system has none. They belong to the caller until release_memory().
-std::byte* reserve_memory(std::size_t bytes);
-/// Makes a part of a reserved range readable and writable; false: there is not enough memory.
+/// Bytes of a page: 4096, or on arm64 16384 or 65536.
+std::size_t page_size();
+
+/// Reserves addresses without memory, at `wish` if it is not 0 and free, else where the system prefers; null: the
+/// system has none. They begin at a page and belong to the caller until release_memory().
+std::byte* reserve_memory(std::size_t bytes, std::uintptr_t wish = 0);
+/// Makes a part of a reserved range, from the start of a page on, readable and writable; false: there is not enough
+/// memory.
 bool commit_memory(std::byte* place, std::size_t bytes);
 void release_memory(std::byte* place, std::size_t bytes);
 
