@@ -266,9 +266,14 @@ void add_send(CLI::App& app, SendCommand& command) {
       "  limber send /physics/part/mass arm1 0.3\n"
       "  limber send '/physics/body/arm*/motor/*/target' 0.5\n"
       "  limber send /get /physics/sim/gravity\n"
+      "  limber send --tags 'i[ff]T' /scene/shape -3 0.5 1\n"
       "Exit codes: 1 it was refused; 3 nobody answers.");
   send->add_option("address", command.address, "where to")->type_name("ADDRESS")->required();
   send->add_option("args", command.words, "what")->type_name("ARGS");
+  send->add_option("--tags", command.tags,
+                   "OSC type tags of the arguments: i h f d s S c r m t b take one each (r m t b in hexadecimal "
+                   "digits), T F N I and [ ] none; default: f for numbers, i for booleans, s for text")
+      ->type_name("TAGS");
   send->add_option("--to", command.to, "another program or machine; default 127.0.0.1:9003")->type_name("[HOST:]PORT");
   send->add_option("--wait", command.wait, "how long to wait for answers; 0: not at all")
       ->type_name("S")

@@ -5,10 +5,13 @@
 #include <algorithm>
 #include <functional>
 #include <optional>
+#include <string_view>
+#include <utility>
 
 #include <fmt/format.h>
 
 #include "app/exit_code.h"
+#include "app/tagged_message.h"
 #include "base/system/clock.h"
 #include "base/system/udp_socket.h"
 #include "base/system/wait.h"
@@ -83,9 +86,11 @@ Replies show_answers(int fd, double wait, bool late, const std::function<void()>
   return answers;
 }
 
-bool send_message(int fd, const Endpoint& to, const Message& message) {
+// `tags`: as in SendCommand
+bool send_message(int fd, const Endpoint& to, const Message& message, std::string_view tags) {
   PacketBuffer buffer;
-  const std::span<const char> packet = encode_message(message, buffer);
+  const std::span<const char> packet =
+      tags.empty() ? encode_message(message, buffer) : encode_tagged(message, tags, buffer);
   return !packet.empty() && system::send_datagram(fd, to, packet) == 0;
 }
 
@@ -103,18 +108,24 @@ int send_command(const SendCommand& command) {
   Message message{command.address, {}};
   if (!message.address.starts_with('/'))
     return fail(kUsage, fmt::format("send: '{}' is no address: it must begin with /", message.address));
-  for (const std::string& word : command.words) message.args.push_back(arg_of(word));
+  if (command.tags.empty()) {
+    for (const std::string& word : command.words) message.args.push_back(arg_of(word));
+  } else {
+    Result<Message> tagged = tagged_message(command.address, command.tags, command.words);
+    if (!tagged) return fail(kUsage, "send: " + tagged.error());
+    message = std::move(*tagged);
+  }
   const Result<Endpoint> to = endpoint_named(command.to);
   if (!to) return fail(kUsage, "send: " + to.error());
   const Result<system::UdpSocket> socket = system::open_udp({});
   if (!socket) return fail(kMachine, "send: " + socket.error());
-  if (!send_message(socket->fd(), *to, message)) {
+  if (!send_message(socket->fd(), *to, message, command.tags)) {
     return fail(
         kMachine,
         fmt::format("send: the message could not be sent to {}; is it too long, or the address wrong?", command.to));
   }
   if (command.wait <= 0) return kFine;
-  const auto ask = [&] { (void)send_message(socket->fd(), *to, {"/get", {Arg::of(kLast)}}); };
+  const auto ask = [&] { (void)send_message(socket->fd(), *to, {"/get", {Arg::of(kLast)}}, {}); };
   const bool late =
       std::ranges::any_of(kAnsweredLate, [&](const char* start) { return message.address.starts_with(start); });
   const Replies answers = show_answers(socket->fd(), command.wait, late, ask);

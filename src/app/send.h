@@ -11,6 +11,7 @@ namespace limber {
 struct SendCommand {
   std::string address;
   std::vector<std::string> words;  ///< The arguments as they were typed.
+  std::string tags;                ///< OSC type tags of the arguments; empty: numbers are f, booleans i, text s.
   std::string to = "127.0.0.1:9003";
   double wait = 1;  ///< s to wait for the answers; 0: none are waited for.
 };

@@ -1,5 +1,6 @@
 // `limber monitor` and `limber send` beside a program that plays.
 #include <algorithm>
+#include <tuple>
 
 #include "app/playing.h"
 #include "app/taken_port.h"
@@ -15,6 +16,11 @@ arm:add_part("base", ball, { mass = 0 })
 arm:add_part("tip", ball, { position = vec3(0, 0, -1) })
 arm:add_joint("elbow", "base", "tip")
 osc:on("/hello", function(name) osc:reply("/hello/back", name, 2) end)
+osc:on("/all", function(...)
+  local said = {}
+  for i = 1, select("#", ...) do said[i] = ("%s:%s"):format(type((select(i, ...))), tostring((select(i, ...)))) end
+  osc:reply("/all/back", table.concat(said, " "))
+end)
 )";
 
 // with an OSC port that the system chooses, and the consoles' folder of its own
@@ -44,6 +50,43 @@ struct WatchedStage {
   Running running;
   std::string in;
 };
+
+// every type on the way in, negative numbers, and the reply
+TEST(Send, TagsChooseTheTypesOfArguments) {
+  const WatchedStage stage;
+  const Ran all = stage.send({"--tags", "ihfdTFNIsSc[ii]", "/all", "-7", "-1099511627776", "-1.5", "-0.1", "arm", "a b",
+                              "q", "-2147483648", "2147483647"});
+  EXPECT_EQ(all.code, 0) << all.err;
+  EXPECT_EQ(all.out,
+            "/all/back \"number:-7 number:-1099511627776 number:-1.5 number:-0.1 boolean:true boolean:false nil:nil "
+            "boolean:true string:arm string:a b string:q number:-2147483648 number:2147483647\"\n");
+  for (const auto& [tag, word, what] : {std::tuple{"r", "ff8000ff", "a packed colour (r)"},
+                                        {"m", "00903c7f", "a MIDI message (m)"},
+                                        {"t", "0000000000000001", "a time tag (t)"},
+                                        {"b", "00ff", "a blob (b)"}}) {
+    const Ran rejected = stage.send({"--tags", tag, "/all", word});
+    EXPECT_EQ(rejected.code, 1) << tag;
+    EXPECT_NE(rejected.err.find(what), std::string::npos) << rejected.err;
+  }
+}
+
+TEST(Send, RejectsWordsThatDoNotFitTheirTags) {
+  const auto rejected = [](std::vector<std::string> words, const std::string& text) {
+    words.insert(words.begin(), {"send", "--to", "1", "--wait", "0", "--tags"});
+    const Ran ran = run(std::move(words));
+    EXPECT_EQ(ran.code, 2) << ran.err;
+    EXPECT_NE(ran.err.find(text), std::string::npos) << ran.err;
+  };
+  rejected({"if", "/a", "1"}, "--tags 'if' needs 2 arguments, got 1");
+  rejected({"T", "/a", "1"}, "--tags 'T' needs 0 arguments, got 1");
+  rejected({"i", "/a", "one"}, "'one' must be a number, since its tag is i");
+  rejected({"c", "/a", "no"}, "'no' must be one ASCII character");
+  rejected({"r", "/a", "ff80"}, "'ff80' must be 8 hexadecimal digits: red, green, blue, alpha");
+  rejected({"b", "/a", "0"}, "'0' must be pairs of hexadecimal digits");
+  rejected({"x", "/a", "0"}, "'x' is not an OSC type tag");
+  rejected({"i]", "/a", "0"}, "a ']' without its '['");
+  rejected({"[i", "/a", "0"}, "a '[' without its ']'");
+}
 
 TEST(Send, PrintsWhatIsAnswered) {
   const WatchedStage stage;
