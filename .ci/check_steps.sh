@@ -64,11 +64,11 @@ begin_tests() {
   done
   export -f fixed_addresses
   printf '%s\n' "${first[@]}" "${rest[@]}" | grep . | test_folder=$folder test_without=${test_without-} \
-    test_only=${test_only-} test_seconds=${test_seconds:-900} xargs -P "$(jobs)" -L 1 bash -c '
+    test_only=${test_only-} test_emulator=${test_emulator-} test_seconds=${test_seconds:-900} xargs -P "$(jobs)" -L 1 bash -c '
     log=build/check/${test_folder//\//_}_test_$0.$1.log
     begin=$SECONDS
     GTEST_SHARD_INDEX=$1 GTEST_TOTAL_SHARDS=$2 fixed_addresses timeout -k 10 "$test_seconds" \
-      "$test_folder/test_$0" --gtest_color=no --gtest_filter="$test_only-$test_without" >"$log" 2>&1
+      $test_emulator "$test_folder/test_$0" --gtest_color=no --gtest_filter="$test_only-$test_without" >"$log" 2>&1
     echo "$? $((SECONDS - begin))" >"${log%.log}.end"'
 }
 

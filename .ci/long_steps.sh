@@ -7,7 +7,7 @@ part_names() { compgen -A function long_ | sed 's/^long_//'; fuzz_names; }
 
 # the lines of the help
 describe_parts() {
-  sed -n 's/^# --long \([a-z_]*\): \(.*\)/\1|\2/p' .ci/*_steps.sh | while IFS='|' read -r name text; do
+  sed -n 's/^# --long \([a-z0-9_]*\): \(.*\)/\1|\2/p' .ci/*_steps.sh | while IFS='|' read -r name text; do
     printf '  %-16s %s\n' "$name" "$text"
   done
   printf '  %-16s %s\n' "NAME_fuzz" "30 minutes of a fuzz target: $(fuzz_names | tr '\n' ' ')"
