@@ -1,5 +1,6 @@
-// In front of every file: what one pass is drawn with, and what surfaces share. In front of this one stand
-// SHADOW_TAPS (0: no shadow), CONTACT_TAPS (0: no darkening under things), DITHER (0, 1).
+// In front of every file: what one pass is drawn with, and what surfaces share. In front of this one are the version of
+// GLSL, SHADOW_TAPS (0: no shadow), CONTACT_TAPS (0: no darkening under things), DITHER (0, 1), and CLIP_DISTANCE (0: this
+// kind of OpenGL has no gl_ClipDistance).
 layout(std140) uniform Frame {
   mat4 view_proj;      // world to clip space; in the mirror's pass the world is turned over
   mat4 clip_to_world;

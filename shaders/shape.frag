@@ -7,6 +7,9 @@ flat in float v_specular;
 out vec4 color;
 
 void main() {
+#ifdef MIRRORED
+  if (at.z < tone.z) discard;  // where there is no gl_ClipDistance
+#endif
   vec3 n = normalize(facing);
   vec3 to_eye = eye.xyz - at;
   float far = length(to_eye);

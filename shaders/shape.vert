@@ -12,6 +12,9 @@ out vec3 facing;
 flat out vec4 v_diffuse;
 flat out vec4 v_ambient;
 flat out float v_specular;
+#ifdef GROUND
+out float depth;
+#endif
 
 vec3 turned(vec3 v) { return v + 2.0 * cross(turn.xyz, cross(turn.xyz, v) + turn.w * v); }
 
@@ -23,6 +26,12 @@ void main() {
   v_ambient = ambient;
   v_specular = extent.w;
   gl_Position = view_proj * vec4(at, 1.0);
+#if CLIP_DISTANCE
   // in the mirror alone; some drivers clip by it even where it is switched off
   gl_ClipDistance[0] = eye.w > 0.5 ? at.z - tone.z : 1.0;
+#endif
+#ifdef GROUND
+  depth = gl_Position.z;  // the map is parallel: w is 1
+  gl_Position.z = 0.0;
+#endif
 }

@@ -119,7 +119,7 @@ Version: $1
 Architecture: $(dpkg --print-architecture)
 Maintainer: $package_maintainer
 Installed-Size: $(du -sk --apparent-size "$2/usr" | cut -f1)
-Depends: $3, libegl1, libgl1
+Depends: $3, libegl1, libgl1, libgles2
 Recommends: libgl1-mesa-dri, fonts-inter, fonts-jetbrains-mono
 Suggests: ffmpeg, avahi-utils, liblo-tools
 Section: graphics

@@ -13,7 +13,8 @@ struct BenchOptions {
   std::vector<std::string> scenes;  ///< Names; empty: all.
   bool compare_raw = false;         ///< Arms: the same in a bare Bullet loop, interleaved.
   bool json = false;
-  int ticks = 0;  ///< Timed ticks of a scene; 0: chosen for each.
+  int ticks = 0;        ///< Timed ticks of a scene; 0: chosen for each.
+  std::string gl = {};  ///< Kind of OpenGL of the picture, see gl_apis().
 };
 
 /// A scene of the bench: its figures as JSON, units in the keys.

@@ -51,8 +51,8 @@ void look_at_all(BenchArms& arms) {
 }
 
 // `warm`: frames in which meshes are handed over and the driver finds its pace
-Json draw(const PictureScene& scene, int warm, int frames) {
-  Result<std::unique_ptr<Renderer>> renderer = Renderer::make(shader_dir(), scene.quality);
+Json draw(GlApi api, const PictureScene& scene, int warm, int frames) {
+  Result<std::unique_ptr<Renderer>> renderer = Renderer::make(api, shader_dir(), scene.quality);
   if (!renderer) return {{"error", renderer.error()}};
   BenchArms arms(bench_arm_scene(scene.arms));
   const auto tick = [&] {
@@ -94,16 +94,18 @@ Json draw(const PictureScene& scene, int warm, int frames) {
 }  // namespace
 
 nlohmann::ordered_json bench_picture(const BenchOptions& options) {
-  const Result<std::unique_ptr<Offscreen>> context = Offscreen::make();
+  const Result<std::unique_ptr<Offscreen>> context = Offscreen::make(options.gl);
   if (!context) return {{"error", context.error()}};
   const bool software = gl_is_software();
   // software draws the large one for seconds
   const int warm = software ? 2 : 100;
   const int frames = options.ticks > 0 ? options.ticks : software ? 100 : 600;
   const int frames_large = software ? std::min(frames, 3) : frames;
+  const GlApi api = (*context)->api();
   return {{"drawn_by", gl_driver()},
-          {"small", draw({16, Quality::low, "low", 640, 360}, warm, frames)},
-          {"large", draw({1000, Quality::high, "high", 1920, 1080}, warm, frames_large)}};
+          {"with", gl_api_info(api).name},
+          {"small", draw(api, {16, Quality::low, "low", 640, 360}, warm, frames)},
+          {"large", draw(api, {1000, Quality::high, "high", 1920, 1080}, warm, frames_large)}};
 }
 
 }  // namespace limber

@@ -77,11 +77,12 @@ bool program_in_path(const std::string& name) {
   return false;
 }
 
-void check_drawing() {
-  const auto context = Offscreen::make();
+void check_drawing(const std::string& gl) {
+  const auto context = Offscreen::make(gl);
   if (context) {
     finding(gl_is_software() ? "mind" : "ok", "OpenGL",
-            gl_driver() + (gl_is_software() ? ": software, slow; windows begin with --quality low" : ""));
+            fmt::format("{} with {}{}", gl_driver(), gl_api_info((*context)->api()).name,
+                        gl_is_software() ? ": software, slow; windows begin with --quality low" : ""));
   } else {
     finding("mind", "OpenGL", context.error());
   }
@@ -135,7 +136,7 @@ int doctor_command(const DoctorCommand& command) {
                         *buffer, kWanted));
   }
   finding("ok", "display", Window::has_display() ? "there is one, for the window" : "none; Limber plays headless");
-  check_drawing();
+  check_drawing(command.gl);
   return data.empty() || !ports ? kMachine : kFine;
 }
 

@@ -8,6 +8,7 @@ namespace limber {
 struct DoctorCommand {
   std::string osc_in = "9003";  ///< As of `play`: where OSC would come in.
   std::string query;            ///< As of `play`; empty: under the number of `osc_in`.
+  std::string gl;               ///< As of `play`.
 };
 
 /// Prints one line a finding; returns 0, or 3 when something that playing needs is missing. [main]

@@ -218,6 +218,7 @@ void add_bench(CLI::App& app, CommandLine& line) {
       ->type_name("SCENE:{" + bench_scene_list() + "}");
   bench->add_flag("--compare-raw", line.bench.compare_raw, "beside a bare Bullet loop, interleaved, with the ratio");
   bench->add_flag("--json", line.bench.json, "for machines");
+  add_gl_option(*bench, line.bench.gl);
   bench->add_option("--ticks", line.bench.ticks, "ticks a round; left out: chosen for each scene")
       ->type_name("N")
       ->check(whole_number());
@@ -252,6 +253,7 @@ void add_monitor(CLI::App& app, MonitorCommand& command) {
 
 void add_doctor(CLI::App& app, DoctorCommand& command) {
   CLI::App* doctor = app.add_subcommand("doctor", "what works on this machine: ports, buffers, data");
+  add_gl_option(*doctor, command.gl);
   doctor->add_option("--osc-in", command.osc_in, "where OSC would come in; default 127.0.0.1:9003")
       ->type_name("[ADDR:]PORT|off");
   doctor

@@ -38,8 +38,9 @@ FreePart free_part(const Gui& gui, int width, int height) {
   return {free.x / width, free.y / height, free.width / width, free.height / height};
 }
 
-GuiOptions panel_options(Window* window) {
+GuiOptions panel_options(Window* window, GlApi api) {
   GuiOptions options;
+  options.glsl = gl_api_info(api).glsl;
   options.behavior_types = behavior_types();
   const auto history = std::make_shared<ConsoleHistory>(ConsoleHistory::default_file());
   options.history = history->lines();

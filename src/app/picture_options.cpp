@@ -13,12 +13,23 @@ namespace {
 
 constexpr int kLargest = 16384;
 
+CLI::Validator gl_choice() {
+  return CLI::Validator(
+      [](std::string& text) {
+        return text == "auto" || gl_apis(text).size() == 1
+                   ? std::string()
+                   : fmt::format("'{}' must be auto, core, es or 3.1 (LIMBER_GL sets it, too)", text);
+      },
+      "", "gl");
+}
+
 }  // namespace
 
 void add_picture_options(CLI::App& play, PictureOptions& o) {
   play.add_flag("--headless", o.headless, "without a window");
+  add_gl_option(play, o.gl);
   play.add_option("--quality", o.quality,
-                  "of the picture; left out: high, but low in a window that no graphics card draws")
+                  "of the picture; left out: high, but low in a window that software, OpenGL ES or OpenGL 3.1 draws")
       ->type_name("low|medium|high")
       ->check(CLI::IsMember({"low", "medium", "high"}));
   play.add_option("--size", o.size, "of the picture or window; default 1280x720")->type_name("WxH");
@@ -37,6 +48,16 @@ void add_picture_options(CLI::App& play, PictureOptions& o) {
   play.add_option("--panel-scale", o.panel_scale, "of the panel, beside what the screen asks for; default 1")
       ->type_name("N")
       ->check(CLI::Range(0.5, 4.0));
+}
+
+void add_gl_option(CLI::App& command, std::string& choice) {
+  command
+      .add_option("--gl", choice,
+                  "draw with OpenGL 3.3 (core), OpenGL ES 3.0 (es) or OpenGL 3.1; default auto: the first of them that "
+                  "the driver has")
+      ->type_name("auto|core|es|3.1")
+      ->check(gl_choice())
+      ->envname("LIMBER_GL");
 }
 
 Result<PictureSize> picture_size(const PictureOptions& options) {

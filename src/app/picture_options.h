@@ -16,6 +16,7 @@ namespace limber {
 /// As it was typed.
 struct PictureOptions {
   bool headless = false;
+  std::string gl;          ///< Kind of OpenGL, see gl_apis().
   std::string quality;     ///< Empty: not given.
   std::string size;        ///< Empty: not given.
   std::string screenshot;  ///< File of a still; empty: none.
@@ -29,6 +30,8 @@ struct PictureOptions {
 };
 
 void add_picture_options(CLI::App& play, PictureOptions& options);
+/// `--gl`, of each command that draws.
+void add_gl_option(CLI::App& command, std::string& choice);
 
 struct PictureSize {
   int width = 1280;

@@ -24,8 +24,8 @@ Rendered failed(int code, const std::string& text) { return {fail(code, text), f
 // the panel over a still: it has seen the ticks before, so that its graphs are full
 class StillPanel {
  public:
-  StillPanel(const PictureOptions& options, const PictureSize& size, Engine& engine, EngineLink& link)
-      : engine_(engine), link_(link), gui_(link, panel_options(nullptr)) {
+  StillPanel(const PictureOptions& options, GlApi api, const PictureSize& size, Engine& engine, EngineLink& link)
+      : engine_(engine), link_(link), gui_(link, panel_options(nullptr, api)) {
     frame_ = {static_cast<double>(size.width), static_cast<double>(size.height), options.panel_scale.value_or(1), 0};
   }
   void frame() {
@@ -57,7 +57,7 @@ Rendered draw_still(const PictureOptions& options, const PictureSize& size, Rend
   const double at = options.at.value_or(0);
   std::optional<StillPanel> panel;
   if (options.panel) {
-    panel.emplace(options, size, engine, link);
+    panel.emplace(options, renderer.api(), size, engine, link);
     moments.on_tick([&] { panel->frame(); });
   }
   const Moments::Went went = moments.go_to(at);
@@ -120,12 +120,12 @@ Rendered render(const PictureOptions& options, Engine& engine, EngineLink& link,
                 const std::function<bool()>& cancel) {
   const Result<PictureSize> size = picture_size(options);
   if (!size) return failed(kUsage, size.error());
-  const Result<std::unique_ptr<Offscreen>> context = Offscreen::make();
+  const Result<std::unique_ptr<Offscreen>> context = Offscreen::make(options.gl);
   if (!context) return failed(kMachine, context.error());
   const Quality quality = picture_quality(options, Quality::high);
-  const Result<std::unique_ptr<Renderer>> renderer = Renderer::make(shader_dir(), quality);
+  const Result<std::unique_ptr<Renderer>> renderer = Renderer::make((*context)->api(), shader_dir(), quality);
   if (!renderer) return failed(kMachine, renderer.error());
-  fmt::print(stderr, "limber: drawn by {}\n", gl_driver());
+  fmt::print(stderr, "limber: drawn by {} with {}\n", gl_driver(), gl_api_info((*context)->api()).name);
   if (gl_is_software() && quality != Quality::low && !options.render.empty())
     fmt::print(stderr, "limber: that is software, and takes its time; --quality low is several times faster\n");
   Moments moments(engine, link, cancel);

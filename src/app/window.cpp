@@ -44,6 +44,11 @@ std::string glfw_fault() {
   return text == nullptr ? "GLFW does not say why" : text;
 }
 
+bool is_set(const char* variable) {
+  const char* const value = std::getenv(variable);
+  return value != nullptr && *value != '\0';
+}
+
 struct KeyName {
   int glfw;
   GuiKey key;
@@ -120,31 +125,86 @@ GLFWmonitor* screen_of(GLFWwindow* window) {
   return best;
 }
 
-}  // namespace
+struct ContextKind {
+  int client;    // GLFW_OPENGL_API, GLFW_OPENGL_ES_API
+  int creation;  // GLFW_NATIVE_CONTEXT_API (GLX with X11), GLFW_EGL_CONTEXT_API
+  int major, minor;
+};
 
-bool Window::has_display() { return std::getenv("DISPLAY") != nullptr || std::getenv("WAYLAND_DISPLAY") != nullptr; }
-
-Result<std::unique_ptr<Window>> Window::open(const std::string& title, int width, int height) {
-  if (!has_display()) return Error{"there is no display"};
-  if (glfwInit() != GLFW_TRUE) return Error{fmt::format("no window can be opened: {}", glfw_fault())};
-  request_failed = false;
-  set_handler("XSetIOErrorHandler", handle_lost_display);
-  set_handler("XSetErrorHandler", handle_failed_request);
-  glfwWindowHint(GLFW_CONTEXT_VERSION_MAJOR, 3);
-  glfwWindowHint(GLFW_CONTEXT_VERSION_MINOR, 3);
-  glfwWindowHint(GLFW_OPENGL_PROFILE, GLFW_OPENGL_CORE_PROFILE);
-  glfwWindowHint(GLFW_OPENGL_FORWARD_COMPAT, GLFW_TRUE);
+GLFWwindow* make_window(const char* title, int width, int height, const ContextKind& kind, bool visible = true) {
+  const bool core = kind.client == GLFW_OPENGL_API && kind.major == 3 && kind.minor >= 2;
+  glfwDefaultWindowHints();
+  glfwWindowHint(GLFW_CLIENT_API, kind.client);
+  glfwWindowHint(GLFW_CONTEXT_CREATION_API, kind.creation);
+  glfwWindowHint(GLFW_CONTEXT_VERSION_MAJOR, kind.major);
+  glfwWindowHint(GLFW_CONTEXT_VERSION_MINOR, kind.minor);
+  glfwWindowHint(GLFW_OPENGL_PROFILE, core ? GLFW_OPENGL_CORE_PROFILE : GLFW_OPENGL_ANY_PROFILE);
+  glfwWindowHint(GLFW_OPENGL_FORWARD_COMPAT, core ? GLFW_TRUE : GLFW_FALSE);
+  glfwWindowHint(GLFW_VISIBLE, visible ? GLFW_TRUE : GLFW_FALSE);
   glfwWindowHint(GLFW_DEPTH_BITS, 0);
   glfwWindowHint(GLFW_STENCIL_BITS, 0);
   glfwWindowHint(GLFW_AUTO_ICONIFY, GLFW_FALSE);
   glfwWindowHintString(GLFW_X11_CLASS_NAME, "limber");
-  GLFWwindow* const window = glfwCreateWindow(width, height, title.c_str(), nullptr, nullptr);
-  if (window == nullptr) {
+  return glfwCreateWindow(width, height, title, nullptr, nullptr);
+}
+
+// EGL beside GLX: some X servers have no GLX, and OpenGL ES comes with EGL
+std::vector<ContextKind> context_kinds(GlApi api) {
+  const GlApiInfo& info = gl_api_info(api);
+  if (!gl_can_load(api)) return {};
+  if (api == GlApi::es)
+    return {{GLFW_OPENGL_ES_API, GLFW_EGL_CONTEXT_API, info.major, info.minor},
+            {GLFW_OPENGL_ES_API, GLFW_NATIVE_CONTEXT_API, info.major, info.minor}};
+  return {{GLFW_OPENGL_API, GLFW_NATIVE_CONTEXT_API, info.major, info.minor},
+          {GLFW_OPENGL_API, GLFW_EGL_CONTEXT_API, info.major, info.minor}};
+}
+
+// the versions of any age that the driver has
+std::vector<std::string> offered_versions() {
+  std::vector<std::string> names;
+  const auto look = [&](const char* name, std::initializer_list<ContextKind> kinds) {
+    for (const ContextKind& kind : kinds) {
+      GLFWwindow* const window = make_window("", 1, 1, kind, false);
+      if (window == nullptr) continue;
+      names.push_back(fmt::format("{} {}.{}", name, glfwGetWindowAttrib(window, GLFW_CONTEXT_VERSION_MAJOR),
+                                  glfwGetWindowAttrib(window, GLFW_CONTEXT_VERSION_MINOR)));
+      glfwDestroyWindow(window);
+      return;
+    }
+  };
+  look("OpenGL", {{GLFW_OPENGL_API, GLFW_NATIVE_CONTEXT_API, 1, 0}, {GLFW_OPENGL_API, GLFW_EGL_CONTEXT_API, 1, 0}});
+  look("OpenGL ES",
+       {{GLFW_OPENGL_ES_API, GLFW_EGL_CONTEXT_API, 2, 0}, {GLFW_OPENGL_ES_API, GLFW_NATIVE_CONTEXT_API, 2, 0}});
+  return names;
+}
+
+}  // namespace
+
+bool Window::has_display() { return is_set("DISPLAY") || is_set("WAYLAND_DISPLAY"); }
+
+Result<std::unique_ptr<Window>> Window::open(const std::string& title, int width, int height,
+                                             std::span<const GlApi> apis) {
+  if (!has_display())
+    return Error{"no display: DISPLAY and WAYLAND_DISPLAY are not set; a desktop session or xvfb-run sets one"};
+  if (glfwInit() != GLFW_TRUE) {
     const std::string why = glfw_fault();
-    glfwTerminate();
-    return Error{fmt::format("no window with OpenGL 3.3 can be opened: {}", why)};
+    const char* const fix = is_set("DISPLAY") || why.starts_with("Wayland")
+                                ? "Set DISPLAY (and XAUTHORITY) or WAYLAND_DISPLAY as in the desktop session"
+                                : "GLFW needs an X server here. On Debian: apt-get install xwayland, log in again";
+    return Error{fmt::format("no window can be opened: {}. {}", why, fix)};
   }
-  return std::unique_ptr<Window>(new Window(window));
+  request_failed = false;
+  set_handler("XSetIOErrorHandler", handle_lost_display);
+  set_handler("XSetErrorHandler", handle_failed_request);
+  for (const GlApi api : apis) {
+    for (const ContextKind& kind : context_kinds(api)) {
+      GLFWwindow* const window = make_window(title.c_str(), width, height, kind);
+      if (window != nullptr) return std::unique_ptr<Window>(new Window(window, api));
+    }
+  }
+  const std::string fault = gl_fault(apis, offered_versions());
+  glfwTerminate();
+  return Error{fmt::format("no window can be opened: {}", fault)};
 }
 
 Result<std::unique_ptr<Window>> Window::open_beside(const Window& first, const std::string& title, int width,
@@ -152,7 +212,7 @@ Result<std::unique_ptr<Window>> Window::open_beside(const Window& first, const s
   GLFWmonitor* const taken = screen_of(first.window_);
   GLFWwindow* const window = glfwCreateWindow(width, height, title.c_str(), nullptr, first.window_);
   if (window == nullptr) return Error{fmt::format("no second window can be opened: {}", glfw_fault())};
-  std::unique_ptr<Window> made(new Window(window));
+  std::unique_ptr<Window> made(new Window(window, first.api_));
   glfwMakeContextCurrent(first.window_);
   int count = 0;
   GLFWmonitor** const screens = glfwGetMonitors(&count);
@@ -165,7 +225,7 @@ Result<std::unique_ptr<Window>> Window::open_beside(const Window& first, const s
   return made;
 }
 
-Window::Window(GLFWwindow* window) : window_(window) {
+Window::Window(GLFWwindow* window, GlApi api) : window_(window), api_(api) {
   glfwMakeContextCurrent(window_);
   glfwSwapInterval(1);
   glfwSetWindowUserPointer(window_, this);

@@ -3,11 +3,13 @@
 
 #include <functional>
 #include <memory>
+#include <span>
 #include <string>
 #include <vector>
 
 #include "base/result.h"
 #include "gui/input.h"
+#include "view/gl.h"
 
 struct GLFWwindow;
 
@@ -25,8 +27,10 @@ class Window {
  public:
   /// Whether this process was told of one. [any]
   static bool has_display();
-  /// Its context is current on this thread. An error says why there can be none. [main]
-  static Result<std::unique_ptr<Window>> open(const std::string& title, int width, int height);
+  /// Its context is current on this thread, of the first of `apis` that can be had. An error says why there can be
+  /// none. [main]
+  static Result<std::unique_ptr<Window>> open(const std::string& title, int width, int height,
+                                              std::span<const GlApi> apis);
   /// Another one, whose context shares objects with `first`'s; on another screen where there is one. First's context
   /// stays current. It goes before `first`. [main]
   static Result<std::unique_ptr<Window>> open_beside(const Window& first, const std::string& title, int width,
@@ -40,6 +44,7 @@ class Window {
 
   /// Takes what came; waits for it so many seconds at most. [main]
   void poll(double seconds);
+  GlApi api() const { return api_; }
   bool closed() const;
   /// Somebody else took it away. [main]
   bool lost() const;
@@ -66,7 +71,7 @@ class Window {
   void wait_for_screen(bool waits);
 
  private:
-  explicit Window(GLFWwindow* window);
+  Window(GLFWwindow* window, GlApi api);
   static void on_key(GLFWwindow* window, int key, int code, int action, int mods);
   static void on_move(GLFWwindow* window, double x, double y);
   static void on_scroll(GLFWwindow* window, double x, double y);
@@ -75,6 +80,7 @@ class Window {
   static void on_focus(GLFWwindow* window, int focused);
 
   GLFWwindow* window_;
+  GlApi api_;
   std::vector<InputEvent> events_;
   MouseMoves mouse_;
   double x_ = 0;

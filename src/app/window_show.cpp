@@ -42,15 +42,20 @@ Result<std::unique_ptr<WindowShow>> WindowShow::open(const PictureOptions& optio
   const PanelSettings settings = load_settings(settings_file());
   if (options.size.empty() && settings.window_width > 0 && settings.window_height > 0)
     *size = {settings.window_width, settings.window_height};
-  Result<std::unique_ptr<Window>> window = Window::open(fmt::format("Limber: {}", scene), size->width, size->height);
+  Result<std::unique_ptr<Window>> window =
+      Window::open(fmt::format("Limber: {}", scene), size->width, size->height, gl_apis(options.gl));
   if (!window) return Error{window.error()};
+  const GlApiInfo& api = gl_api_info((*window)->api());
+  // cards that have no OpenGL 3.3 are those of single-board computers
   const bool software = gl_is_software();
-  const Quality quality = picture_quality(options, software ? Quality::low : Quality::high);
-  Result<std::unique_ptr<Renderer>> renderer = Renderer::make(shader_dir(), quality);
+  const bool slow = software || api.api != GlApi::core;
+  const Quality quality = picture_quality(options, slow ? Quality::low : Quality::high);
+  Result<std::unique_ptr<Renderer>> renderer = Renderer::make(api.api, shader_dir(), quality);
   if (!renderer) return Error{renderer.error()};
-  fmt::print(stderr, "limber: window {} × {}, drawn by {}\n", size->width, size->height, gl_driver());
-  if (software && options.quality.empty())
-    fmt::print(stderr, "limber: that is software, so the picture is of quality low; --quality high looks better\n");
+  fmt::print(stderr, "limber: window {} × {}, drawn by {} with {}\n", size->width, size->height, gl_driver(), api.name);
+  if (slow && options.quality.empty())
+    fmt::print(stderr, "limber: that is {}, so the picture is of quality low; --quality high looks better\n",
+               software ? "software" : api.name);
   return std::unique_ptr<WindowShow>(
       new WindowShow(std::move(*window), std::move(*renderer), options, settings, scene, link));
 }
@@ -66,7 +71,7 @@ WindowShow::WindowShow(std::unique_ptr<Window> window, std::unique_ptr<Renderer>
       own_size_(!options.size.empty()),
       scene_(std::move(scene)),
       link_(link) {
-  GuiOptions panel = panel_options(window_.get());
+  GuiOptions panel = panel_options(window_.get(), window_->api());
   panel.settings = settings;
   gui_ = std::make_unique<Gui>(link_, std::move(panel));
 }

@@ -93,7 +93,10 @@ Gui::Gui(EngineLink& link, GuiOptions options)
   desk_.copy = options_.copy;
   desk_.options = &options_;
   for (const PanelKind& kind : panel_kinds()) seats_.push_back({kind, kind.make()});
-  if (options_.paints) ImGui_ImplOpenGL3_Init("#version 330 core");
+  if (options_.paints && !ImGui_ImplOpenGL3_Init(options_.glsl.c_str())) {
+    log_error("the panel is not drawn: libGL.so.1 can't be loaded. On Debian: apt-get install libgl1");
+    options_.paints = false;
+  }
 }
 
 Gui::~Gui() {

@@ -21,7 +21,8 @@ struct ImGuiContext;
 namespace limber {
 
 struct GuiOptions {
-  bool paints = true;  ///< Through OpenGL, in the context that is current; false: nothing is drawn.
+  bool paints = true;                      ///< Through OpenGL, in the context that is current; false: nothing is drawn.
+  std::string glsl = "#version 330 core";  ///< First line of its shaders, as the context wants it.
   std::string font_root = "/";
   PanelSettings settings;
   std::vector<std::string> behavior_types;  ///< What may be added.

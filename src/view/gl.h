@@ -1,10 +1,13 @@
-// The few OpenGL objects that the picture needs, each of which goes with its owner; and the bytes of a picture.
+// The few OpenGL objects that the picture needs, each of which goes with its owner; the kinds of OpenGL that it can be
+// drawn with, and what each of them lacks.
 #pragma once
 
 #include <epoxy/gl.h>
 
 #include <cstdint>
+#include <span>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -55,7 +58,37 @@ using GlRenderbuffer = GlName<GlKind::renderbuffer>;
 using GlFramebuffer = GlName<GlKind::framebuffer>;
 using GlProgram = GlName<GlKind::program>;
 
-/// What draws, in the driver's words: "llvmpipe (LLVM 15.0.6, 256 bits)". [main]
+/// The kinds of OpenGL that the picture can be drawn with, in the order in which they are tried: 3.3 core, ES 3.0, 3.1.
+enum class GlApi : std::uint8_t { core, es, gl31 };
+
+struct GlApiInfo {
+  GlApi api;
+  const char* option;  ///< As `--gl` has it: "core", "es", "3.1".
+  const char* name;    ///< "OpenGL 3.3", "OpenGL ES 3.0", "OpenGL 3.1".
+  int major, minor;
+  const char* glsl;  ///< The first line of its shaders.
+  int line_offset;   ///< The line behind `#line n` is counted as n plus this.
+  // features; the renderer and the shaders replace a missing one
+  bool srgb_switch;     ///< GL_FRAMEBUFFER_SRGB; without it, sRGB framebuffers always convert.
+  bool clip_distance;   ///< gl_ClipDistance.
+  bool depth_clamp;     ///< GL_DEPTH_CLAMP.
+  bool depth_filter;    ///< Depth textures can be read with linear filtering and without comparison.
+  bool attribute_slot;  ///< Shaders declare the locations of attributes without an extension.
+};
+const GlApiInfo& gl_api_info(GlApi api);
+
+/// The kinds to try, in order. `choice`: an `option`, or "auto" or nothing for all. [any]
+std::vector<GlApi> gl_apis(std::string_view choice);
+/// "OpenGL 3.3, OpenGL ES 3.0 or OpenGL 3.1". [any]
+std::string gl_names(std::span<const GlApi> apis);
+
+/// Whether the library of this kind's functions can be loaded. The function loader ends the program without it. [any]
+bool gl_can_load(GlApi api);
+/// Why no context of `apis` can be made, and the fix. `offered`: the versions that the driver has, such as
+/// "OpenGL 2.1"; empty: no context of any version. [any]
+std::string gl_fault(std::span<const GlApi> apis, const std::vector<std::string>& offered);
+
+/// The driver's name for the hardware: "llvmpipe (LLVM 15.0.6, 256 bits)". [main]
 std::string gl_driver();
 /// Whether that is software. [main]
 bool gl_is_software();

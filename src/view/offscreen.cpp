@@ -4,9 +4,12 @@
 #include <epoxy/egl.h>
 
 #include <array>
+#include <string>
 #include <vector>
 
 #include <fmt/format.h>
+
+#include "base/system/process.h"
 
 namespace limber {
 
@@ -29,44 +32,74 @@ std::vector<EGLDisplay> displays() {
   return all;
 }
 
-EGLContext context_on(EGLDisplay display) {
-  constexpr std::array<EGLint, 5> kConfig = {EGL_SURFACE_TYPE, 0, EGL_RENDERABLE_TYPE, EGL_OPENGL_BIT, EGL_NONE};
-  constexpr std::array<EGLint, 7> kContext = {
-      EGL_CONTEXT_MAJOR_VERSION,           3,       EGL_CONTEXT_MINOR_VERSION, 3, EGL_CONTEXT_OPENGL_PROFILE_MASK,
-      EGL_CONTEXT_OPENGL_CORE_PROFILE_BIT, EGL_NONE};
+struct Version {
+  int major, minor;
+  bool es;
+};
+
+// current when it was made
+EGLContext context_on(EGLDisplay display, const Version& version) {
+  const EGLint kind = version.es ? version.major > 2 ? EGL_OPENGL_ES3_BIT : EGL_OPENGL_ES2_BIT : EGL_OPENGL_BIT;
+  const std::array<EGLint, 5> wanted = {EGL_SURFACE_TYPE, 0, EGL_RENDERABLE_TYPE, kind, EGL_NONE};
+  std::vector<EGLint> attributes = {EGL_CONTEXT_MAJOR_VERSION, version.major, EGL_CONTEXT_MINOR_VERSION, version.minor};
+  // older versions have no profiles
+  if (!version.es && version.major == 3 && version.minor > 1)
+    attributes.insert(attributes.end(), {EGL_CONTEXT_OPENGL_PROFILE_MASK, EGL_CONTEXT_OPENGL_CORE_PROFILE_BIT});
+  attributes.push_back(EGL_NONE);
   EGLConfig config = nullptr;
   EGLint count = 0;
-  if (eglChooseConfig(display, kConfig.data(), &config, 1, &count) != EGL_TRUE || count == 0) return EGL_NO_CONTEXT;
-  if (eglBindAPI(EGL_OPENGL_API) != EGL_TRUE) return EGL_NO_CONTEXT;
-  const EGLContext context = eglCreateContext(display, config, EGL_NO_CONTEXT, kContext.data());
+  if (eglChooseConfig(display, wanted.data(), &config, 1, &count) != EGL_TRUE || count == 0) return EGL_NO_CONTEXT;
+  if (eglBindAPI(version.es ? EGL_OPENGL_ES_API : EGL_OPENGL_API) != EGL_TRUE) return EGL_NO_CONTEXT;
+  const EGLContext context = eglCreateContext(display, config, EGL_NO_CONTEXT, attributes.data());
   if (context == EGL_NO_CONTEXT) return context;
   if (eglMakeCurrent(display, EGL_NO_SURFACE, EGL_NO_SURFACE, context) == EGL_TRUE) return context;
   eglDestroyContext(display, context);
   return EGL_NO_CONTEXT;
 }
 
+// the versions of any age that the driver has
+std::vector<std::string> offered_on(EGLDisplay display) {
+  std::vector<std::string> names;
+  for (const Version& version : {Version{1, 0, false}, Version{2, 0, true}}) {
+    if (!gl_can_load(version.es ? GlApi::es : GlApi::core)) continue;
+    const EGLContext context = context_on(display, version);
+    if (context == EGL_NO_CONTEXT) continue;
+    names.push_back(
+        fmt::format("OpenGL {}{}.{}", version.es ? "ES " : "", epoxy_gl_version() / 10, epoxy_gl_version() % 10));
+    eglMakeCurrent(display, EGL_NO_SURFACE, EGL_NO_SURFACE, EGL_NO_CONTEXT);
+    eglDestroyContext(display, context);
+  }
+  return names;
+}
+
 }  // namespace
 
-Result<std::unique_ptr<Offscreen>> Offscreen::make() {
-  EGLint fault = EGL_SUCCESS;
+Result<std::unique_ptr<Offscreen>> Offscreen::make(std::string_view choice) {
+  const std::vector<GlApi> apis = gl_apis(choice);
+  std::vector<std::string> offered;
+  // the function loader ends the program without it
+  if (!system::load_library("libEGL.so.1")) return Error{gl_fault(apis, offered)};
   for (const EGLDisplay display : displays()) {
-    if (display == EGL_NO_DISPLAY) continue;
-    if (eglInitialize(display, nullptr, nullptr) != EGL_TRUE) {
-      fault = eglGetError();
-      continue;
+    if (display == EGL_NO_DISPLAY || eglInitialize(display, nullptr, nullptr) != EGL_TRUE) continue;
+    for (const GlApi api : apis) {
+      if (!gl_can_load(api)) continue;
+      const GlApiInfo& info = gl_api_info(api);
+      const EGLContext context = context_on(display, {info.major, info.minor, api == GlApi::es});
+      if (context != EGL_NO_CONTEXT) return std::unique_ptr<Offscreen>(new Offscreen(display, context, api));
     }
-    if (const EGLContext context = context_on(display); context != EGL_NO_CONTEXT)
-      return std::unique_ptr<Offscreen>(new Offscreen(display, context));
-    fault = eglGetError();
+    if (offered.empty()) offered = offered_on(display);
     eglTerminate(display);
   }
-  return Error{
-      fmt::format("there is no OpenGL 3.3 without a display here (EGL's code 0x{:x}); on Debian it comes with "
-                  "apt-get install libegl1 libgl1-mesa-dri",
-                  fault)};
+  return Error{gl_fault(apis, offered)};
+}
+
+void Offscreen::use() const {
+  eglBindAPI(api_ == GlApi::es ? EGL_OPENGL_ES_API : EGL_OPENGL_API);
+  eglMakeCurrent(display_, EGL_NO_SURFACE, EGL_NO_SURFACE, context_);
 }
 
 Offscreen::~Offscreen() {
+  eglBindAPI(api_ == GlApi::es ? EGL_OPENGL_ES_API : EGL_OPENGL_API);
   eglMakeCurrent(display_, EGL_NO_SURFACE, EGL_NO_SURFACE, EGL_NO_CONTEXT);
   eglDestroyContext(display_, context_);
   // the display stays: drivers that are unloaded leave memory behind

@@ -44,76 +44,57 @@ void describe_instance(std::size_t first) {
 
 }  // namespace
 
-Renderer::Renderer(std::string shader_folder, const Grade& grade, std::string defines)
-    : grade_(grade),
-      shaders_(std::move(shader_folder), std::move(defines)),
+Renderer::Renderer(GlApi api, std::string shader_folder, const Grade& grade, std::string defines)
+    : api_(gl_api_info(api)),
+      grade_(grade),
+      shaders_(api, std::move(shader_folder), std::move(defines)),
       instances_(GlBuffer::make()),
       frame_(GlBuffer::make()),
       nothing_(GlVertexArray::make()),
       lamp_(make_depth(grade.lamp_map, true)),
       ground_(make_depth(grade.ground_map, false)),
+      target_(api),
+      output_(api),
       overlay_buffer_(GlBuffer::make()),
       overlay_array_(GlVertexArray::make()) {
+  GLint texture = 0;
   glGetIntegerv(GL_MAX_RENDERBUFFER_SIZE, &largest_);
-  largest_ = std::min(largest_, 16384);
+  glGetIntegerv(GL_MAX_TEXTURE_SIZE, &texture);
+  largest_ = std::min({largest_, texture, 16384});
 }
 
-Result<std::unique_ptr<Renderer>> Renderer::make(const std::string& shader_folder, Quality quality) {
+Result<std::unique_ptr<Renderer>> Renderer::make(GlApi api, const std::string& shader_folder, Quality quality) {
   static const std::array<Grade, 3> grades = {
       {{0, 1, 0, 0, 1024, 8, 1, false}, {2, 6, 6, 1, 1024, 256, 0, true}, {4, 14, 12, 1, 2048, 512, 0, true}}};
-  if (epoxy_gl_version() < 33)
-    return Error{fmt::format("OpenGL is {}.{} here ({}), the picture needs 3.3", epoxy_gl_version() / 10,
-                             epoxy_gl_version() % 10, gl_driver())};
+  for (const char* extension : {"GL_ARB_explicit_attrib_location", "GL_ARB_instanced_arrays"}) {
+    if (api == GlApi::gl31 && !epoxy_has_gl_extension(extension))
+      return Error{fmt::format("{} lacks {}. Update the graphics driver, or draw in software: LIBGL_ALWAYS_SOFTWARE=1",
+                               gl_driver(), extension)};
+  }
   const Grade& grade = grades[static_cast<std::size_t>(quality)];
   std::string defines = fmt::format("#define SHADOW_TAPS {}\n#define CONTACT_TAPS {}\n#define DITHER {}\n",
                                     grade.shadow_taps, grade.contact_taps, grade.dither);
-  std::unique_ptr<Renderer> made(new Renderer(shader_folder, grade, std::move(defines)));
+  std::unique_ptr<Renderer> made(new Renderer(api, shader_folder, grade, std::move(defines)));
   if (Result<void> started = made->shaders_.start(); !started) return Error{started.error()};
   return made;
 }
 
-Renderer::DepthMap Renderer::make_depth(int side, bool compares) {
+Renderer::DepthMap Renderer::make_depth(int side, bool compares) const {
   DepthMap map{GlTexture::make(), GlFramebuffer::make()};
   glBindTexture(GL_TEXTURE_2D, *map.texture);
   glTexImage2D(GL_TEXTURE_2D, 0, GL_DEPTH_COMPONENT24, side, side, 0, GL_DEPTH_COMPONENT, GL_UNSIGNED_INT, nullptr);
-  glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_LINEAR);
-  glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, GL_LINEAR);
+  const GLint filter = compares || api_.depth_filter ? GL_LINEAR : GL_NEAREST;
+  glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, filter);
+  glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, filter);
   glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_WRAP_S, GL_CLAMP_TO_EDGE);
   glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_WRAP_T, GL_CLAMP_TO_EDGE);
   if (compares) glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_COMPARE_MODE, GL_COMPARE_REF_TO_TEXTURE);
   glBindFramebuffer(GL_FRAMEBUFFER, *map.frame);
   glFramebufferTexture2D(GL_FRAMEBUFFER, GL_DEPTH_ATTACHMENT, GL_TEXTURE_2D, *map.texture, 0);
-  glDrawBuffer(GL_NONE);
+  const GLenum none = GL_NONE;
+  glDrawBuffers(1, &none);
   glReadBuffer(GL_NONE);
   return map;
-}
-
-Result<void> Renderer::resize(Canvas& canvas, int width, int height) {
-  if (width > largest_ || height > largest_)
-    return Error{fmt::format("a picture of {} × {} is too large: {} draws up to {} a side", width, height, gl_driver(),
-                             largest_)};
-  if (width == canvas.width && height == canvas.height) return {};
-  const auto store = [&](const GlRenderbuffer& buffer, GLenum format, int samples) {
-    glBindRenderbuffer(GL_RENDERBUFFER, *buffer);
-    glRenderbufferStorageMultisample(GL_RENDERBUFFER, samples, format, width, height);
-  };
-  GLint most = 0;
-  glGetIntegerv(GL_MAX_SAMPLES, &most);
-  const int samples = std::min(grade_.samples, most);
-  store(canvas.color, GL_SRGB8_ALPHA8, samples);
-  store(canvas.depth, GL_DEPTH_COMPONENT24, samples);
-  store(canvas.picture, GL_SRGB8_ALPHA8, 0);
-  glBindFramebuffer(GL_FRAMEBUFFER, *canvas.samples);
-  glFramebufferRenderbuffer(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_RENDERBUFFER, *canvas.color);
-  glFramebufferRenderbuffer(GL_FRAMEBUFFER, GL_DEPTH_ATTACHMENT, GL_RENDERBUFFER, *canvas.depth);
-  const bool whole = glCheckFramebufferStatus(GL_FRAMEBUFFER) == GL_FRAMEBUFFER_COMPLETE;
-  glBindFramebuffer(GL_FRAMEBUFFER, *canvas.resolved);
-  glFramebufferRenderbuffer(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_RENDERBUFFER, *canvas.picture);
-  if (!whole || glGetError() == GL_OUT_OF_MEMORY)
-    return Error{fmt::format("OpenGL has no room for a picture of {} × {}", width, height)};
-  canvas.width = width;
-  canvas.height = height;
-  return {};
 }
 
 const Renderer::GpuMesh& Renderer::mesh(const MeshKey& key, int detail) {
@@ -173,9 +154,9 @@ void Renderer::draw_depth(const DepthMap& map, int side, const glm::mat4& clip, 
   glBindFramebuffer(GL_FRAMEBUFFER, *map.frame);
   glViewport(0, 0, side, side);
   glClear(GL_DEPTH_BUFFER_BIT);
-  glUseProgram(shaders_.program("depth"));
+  glUseProgram(shaders_.program(through && !api_.depth_clamp ? "ground" : "depth"));
   if (through) {
-    glEnable(GL_DEPTH_CLAMP);
+    if (api_.depth_clamp) glEnable(GL_DEPTH_CLAMP);
     glDisable(GL_CULL_FACE);
   } else {
     glEnable(GL_POLYGON_OFFSET_FILL);
@@ -183,7 +164,7 @@ void Renderer::draw_depth(const DepthMap& map, int side, const glm::mat4& clip, 
   }
   draw_batches(list_.opaque(), 1, true);
   draw_batches(list_.clear(), 1, true);
-  glDisable(GL_DEPTH_CLAMP);
+  if (through && api_.depth_clamp) glDisable(GL_DEPTH_CLAMP);
   glDisable(GL_POLYGON_OFFSET_FILL);
   glEnable(GL_CULL_FACE);
 }
@@ -206,14 +187,14 @@ void Renderer::draw_mirrored(const Lighting& lighting) {
   frame.eye.z = 2 * floor - frame.eye.z;
   frame.eye.w = 1;
   upload(frame);
-  glUseProgram(shaders_.program("shape"));
+  glUseProgram(shaders_.program(api_.clip_distance ? "shape" : "mirrored"));
   glFrontFace(GL_CW);
-  glEnable(GL_CLIP_DISTANCE0);
+  if (api_.clip_distance) glEnable(GL_CLIP_DISTANCE0);
   glEnable(GL_BLEND);
   draw_batches(list_.opaque(), 0, false);
   draw_batches(list_.clear(), 0, false);
   glDisable(GL_BLEND);
-  glDisable(GL_CLIP_DISTANCE0);
+  if (api_.clip_distance) glDisable(GL_CLIP_DISTANCE0);
   glFrontFace(GL_CCW);
 }
 
@@ -254,11 +235,11 @@ void Renderer::draw_floors(const Lighting& lighting, const LookView& look) {
 }
 
 // over everything, twice: plain where it is seen, faint where something stands before it
-void Renderer::draw_overlay(const Snapshot& before, const Snapshot& now, double mix, const Canvas& canvas) {
+void Renderer::draw_overlay(const Snapshot& before, const Snapshot& now, double mix, const RenderTarget& target) {
   constexpr double kLinesOfHeight = 720;  // of which one is a pixel wide
   constexpr float kBehind = 0.3F;
   if (now.overlay.empty()) return;
-  overlay_.gather(before, now, mix, std::max(1.0, 1.3 * canvas.height / kLinesOfHeight));
+  overlay_.gather(before, now, mix, std::max(1.0, 1.3 * target.height() / kLinesOfHeight));
   const std::span<const OverlayLine> lines = overlay_.lines();
   glBindVertexArray(*overlay_array_);
   glBindBuffer(GL_ARRAY_BUFFER, *overlay_buffer_);
@@ -271,8 +252,8 @@ void Renderer::draw_overlay(const Snapshot& before, const Snapshot& now, double 
     glVertexAttribDivisor(i, 1);
   }
   glUseProgram(shaders_.program("overlay"));
-  glUniform4f(shaders_.uniform("overlay", "screen"), static_cast<float>(canvas.width),
-              static_cast<float>(canvas.height), 0, 0);
+  glUniform4f(shaders_.uniform("overlay", "screen"), static_cast<float>(target.width()),
+              static_cast<float>(target.height()), 0, 0);
   glDisable(GL_CULL_FACE);
   glDepthMask(GL_FALSE);
   glEnable(GL_BLEND);
@@ -298,7 +279,7 @@ void Renderer::draw_shadows(const Lighting& lighting) {
   glEnable(GL_DEPTH_TEST);
   glDepthFunc(GL_LEQUAL);
   glEnable(GL_CULL_FACE);
-  glEnable(GL_FRAMEBUFFER_SRGB);
+  convert_srgb(api_, true);
   draw_depth(lamp_, grade_.lamp_map, lighting.lamp_clip, false);
   if (grade_.contact_taps > 0) draw_depth(ground_, grade_.ground_map, lighting.ground_clip, true);
   glActiveTexture(GL_TEXTURE1);
@@ -309,18 +290,21 @@ void Renderer::draw_shadows(const Lighting& lighting) {
 
 Result<void> Renderer::draw(const Snapshot& before, const Snapshot& now, double mix, int width, int height,
                             const FreePart& free) {
-  return draw_into(canvas_, before, now, mix, width, height, free);
+  return draw_into(target_, before, now, mix, width, height, free);
 }
 
 Result<void> Renderer::draw_output(const Snapshot& before, const Snapshot& now, double mix, int width, int height) {
   return draw_into(output_, before, now, mix, width, height, {});
 }
 
-Result<void> Renderer::draw_into(Canvas& canvas, const Snapshot& before, const Snapshot& now, double mix, int width,
-                                 int height, const FreePart& free) {
+Result<void> Renderer::draw_into(RenderTarget& target, const Snapshot& before, const Snapshot& now, double mix,
+                                 int width, int height, const FreePart& free) {
   width = std::max(width, 1);
   height = std::max(height, 1);
-  if (Result<void> sized = resize(canvas, width, height); !sized) return sized;
+  if (width > largest_ || height > largest_)
+    return Error{fmt::format("a picture of {} × {} is too large: {} draws up to {} a side", width, height, gl_driver(),
+                             largest_)};
+  if (Result<void> sized = target.resize(width, height, grade_.samples); !sized) return sized;
   const CameraView camera = camera_of(now);
   const LookView look = look_of(now);
   const Lens lens = lens_of(camera, width, height, free);
@@ -339,10 +323,7 @@ Result<void> Renderer::draw_into(Canvas& canvas, const Snapshot& before, const S
   }
 
   draw_shadows(lighting);
-  glBindFramebuffer(GL_FRAMEBUFFER, *canvas.samples);
-  glViewport(0, 0, width, height);
-  glClearColor(0, 0, 0, 1);
-  glClear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
+  target.begin();
   upload(lighting.frame);
   // what shines through the floor comes before it; else what is nearest comes first and spares the rest
   if (lighting.mirrors) {
@@ -363,58 +344,13 @@ Result<void> Renderer::draw_into(Canvas& canvas, const Snapshot& before, const S
   draw_batches(list_.clear(), 0, false);
   glDisable(GL_BLEND);
   glDepthMask(GL_TRUE);
-  draw_overlay(before, now, mix, canvas);
+  draw_overlay(before, now, mix, target);
 
-  glBindFramebuffer(GL_READ_FRAMEBUFFER, *canvas.samples);
-  glBindFramebuffer(GL_DRAW_FRAMEBUFFER, *canvas.resolved);
-  glBlitFramebuffer(0, 0, width, height, 0, 0, width, height, GL_COLOR_BUFFER_BIT, GL_NEAREST);
+  target.resolve(shaders_);
   glBindVertexArray(0);
   return {};
 }
 
-Pixels Renderer::read() const {
-  Pixels pixels{canvas_.width, canvas_.height, {}};
-  const std::size_t row = 4 * static_cast<std::size_t>(canvas_.width);
-  pixels.bytes.resize(row * static_cast<std::size_t>(canvas_.height));
-  glBindFramebuffer(GL_READ_FRAMEBUFFER, *canvas_.resolved);
-  glPixelStorei(GL_PACK_ALIGNMENT, 1);
-  glReadPixels(0, 0, canvas_.width, canvas_.height, GL_RGBA, GL_UNSIGNED_BYTE, pixels.bytes.data());
-  // OpenGL's first row is the lowest
-  for (std::size_t low = 0, high = static_cast<std::size_t>(canvas_.height) - 1; low < high; low++, high--)
-    std::swap_ranges(pixels.bytes.begin() + static_cast<std::ptrdiff_t>(low * row),
-                     pixels.bytes.begin() + static_cast<std::ptrdiff_t>((low + 1) * row),
-                     pixels.bytes.begin() + static_cast<std::ptrdiff_t>(high * row));
-  for (std::size_t i = 3; i < pixels.bytes.size(); i += 4) pixels.bytes[i] = 255;
-  return pixels;
-}
-
-void Renderer::draw_over(const std::function<void()>& draw) const {
-  glDisable(GL_FRAMEBUFFER_SRGB);
-  glBindFramebuffer(GL_FRAMEBUFFER, *canvas_.resolved);
-  glViewport(0, 0, canvas_.width, canvas_.height);
-  draw();
-  glBindFramebuffer(GL_FRAMEBUFFER, 0);
-}
-
 void Renderer::finish() { glFinish(); }
-
-void Renderer::show(int width, int height) const {
-  glDisable(GL_FRAMEBUFFER_SRGB);  // the bytes as they are
-  glBindFramebuffer(GL_READ_FRAMEBUFFER, *canvas_.resolved);
-  glBindFramebuffer(GL_DRAW_FRAMEBUFFER, 0);
-  const bool fits = width == canvas_.width && height == canvas_.height;
-  glBlitFramebuffer(0, 0, canvas_.width, canvas_.height, 0, 0, width, height, GL_COLOR_BUFFER_BIT,
-                    fits ? GL_NEAREST : GL_LINEAR);
-}
-
-void Renderer::show_output(const GlFramebuffer& frame, int width, int height) const {
-  glDisable(GL_FRAMEBUFFER_SRGB);
-  glBindFramebuffer(GL_READ_FRAMEBUFFER, *frame);
-  // each time: what another context has made of it since is seen here once it is attached
-  glFramebufferRenderbuffer(GL_READ_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_RENDERBUFFER, *output_.picture);
-  glBindFramebuffer(GL_DRAW_FRAMEBUFFER, 0);
-  glBlitFramebuffer(0, 0, output_.width, output_.height, 0, 0, width, height, GL_COLOR_BUFFER_BIT,
-                    output_.width == width && output_.height == height ? GL_NEAREST : GL_LINEAR);
-}
 
 }  // namespace limber

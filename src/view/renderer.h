@@ -13,6 +13,7 @@
 #include "view/lighting.h"
 #include "view/overlay_lines.h"
 #include "view/pixels.h"
+#include "view/render_target.h"
 #include "view/shaders.h"
 
 namespace limber {
@@ -21,9 +22,9 @@ enum class Quality : std::uint8_t { low, medium, high };
 
 class Renderer {
  public:
-  /// `shader_folder`: watched by renew_shaders(); empty: the shaders inside the program. Needs a current context, which
-  /// outlives it. An error: what OpenGL can't do here. [main]
-  static Result<std::unique_ptr<Renderer>> make(const std::string& shader_folder, Quality quality);
+  /// `api`: of the current context, which outlives it. `shader_folder`: watched by renew_shaders(); empty: the shaders
+  /// inside the program. An error: what OpenGL can't do here. [main]
+  static Result<std::unique_ptr<Renderer>> make(GlApi api, const std::string& shader_folder, Quality quality);
 
   /// Draws between two snapshots (`mix` 0: before, 1: now). A picture is at least 1 × 1; an error: too large. [main]
   /// `free`: where nothing will lie over it.
@@ -33,20 +34,23 @@ class Renderer {
   /// A second picture of the same, with nothing over it, beside the one that draw() makes. [main]
   Result<void> draw_output(const Snapshot& before, const Snapshot& now, double mix, int width, int height);
   /// Calls what draws over the picture drawn last, which is bound, its colours as they are. [main]
-  void draw_over(const std::function<void()>& draw) const;
+  void draw_over(const std::function<void()>& draw) const { target_.draw_over(draw); }
   /// The picture drawn last. [main]
-  Pixels read() const;
+  Pixels read() const { return target_.read(); }
   /// Returns when the picture is drawn. [main]
   static void finish();
   /// Copies it into the window's own framebuffer, stretched to that size. [main]
-  void show(int width, int height) const;
+  void show(int width, int height) const { target_.show(width, height); }
   /// The same of the second picture, in another context that shares objects with this one and is current there.
   /// `frame` is a framebuffer of that context. [main]
-  void show_output(const GlFramebuffer& frame, int width, int height) const;
+  void show_output(const GlFramebuffer& frame, int width, int height) const {
+    output_.show_shared(frame, width, height);
+  }
 
   /// Takes over shaders that were saved; true: the picture looks different now. [main]
   bool renew_shaders() { return shaders_.renew(); }
   const std::string& shader_fault() const { return shaders_.fault(); }
+  GlApi api() const { return api_.api; }
   /// A side of the largest picture, pixels.
   int largest() const { return largest_; }
 
@@ -62,23 +66,12 @@ class Renderer {
     GlTexture texture;
     GlFramebuffer frame;
   };
-  /// What one picture is drawn into.
-  struct Canvas {
-    GlFramebuffer samples = GlFramebuffer::make();
-    GlFramebuffer resolved = GlFramebuffer::make();
-    GlRenderbuffer color = GlRenderbuffer::make();
-    GlRenderbuffer depth = GlRenderbuffer::make();
-    GlRenderbuffer picture = GlRenderbuffer::make();
-    int width = 0;
-    int height = 0;
-  };
-  Renderer(std::string shader_folder, const Grade& grade, std::string defines);
+  Renderer(GlApi api, std::string shader_folder, const Grade& grade, std::string defines);
 
-  static DepthMap make_depth(int side, bool compares);
-  Result<void> resize(Canvas& canvas, int width, int height);
-  Result<void> draw_into(Canvas& canvas, const Snapshot& before, const Snapshot& now, double mix, int width, int height,
-                         const FreePart& free);
-  void draw_overlay(const Snapshot& before, const Snapshot& now, double mix, const Canvas& canvas);
+  DepthMap make_depth(int side, bool compares) const;
+  Result<void> draw_into(RenderTarget& target, const Snapshot& before, const Snapshot& now, double mix, int width,
+                         int height, const FreePart& free);
+  void draw_overlay(const Snapshot& before, const Snapshot& now, double mix, const RenderTarget& target);
   const GpuMesh& mesh(const MeshKey& key, int detail);
   void forget_meshes();
   void upload(const FrameBlock& frame);
@@ -90,6 +83,7 @@ class Renderer {
   void draw_floor(const PlaneView& plane, const Lighting& lighting, bool stage);
   void draw_sky();
 
+  const GlApiInfo& api_;
   const Grade& grade_;
   Shaders shaders_;
   DrawList list_;
@@ -98,7 +92,7 @@ class Renderer {
   GlBuffer instances_, frame_;
   GlVertexArray nothing_;  // for what makes its corners in the shader
   DepthMap lamp_, ground_;
-  Canvas canvas_, output_;
+  RenderTarget target_, output_;
   OverlayLines overlay_;
   GlBuffer overlay_buffer_;
   GlVertexArray overlay_array_;

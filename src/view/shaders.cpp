@@ -26,12 +26,29 @@ struct ProgramFiles {
   const char* name;
   const char* vertex;
   const char* fragment;
+  const char* defines = "";
+  bool GlApiInfo::*unless = nullptr;  // replaces this feature of OpenGL
 };
-constexpr std::array<ProgramFiles, 5> kPrograms = {{{"shape", "shape.vert", "shape.frag"},
-                                                    {"depth", "shape.vert", "depth.frag"},
-                                                    {"floor", "floor.vert", "floor.frag"},
-                                                    {"sky", "sky.vert", "sky.frag"},
-                                                    {"overlay", "overlay.vert", "overlay.frag"}}};
+const std::array<ProgramFiles, 8> kPrograms = {
+    {{"shape", "shape.vert", "shape.frag"},
+     {"depth", "shape.vert", "depth.frag"},
+     {"floor", "floor.vert", "floor.frag"},
+     {"sky", "sky.vert", "sky.frag"},
+     {"overlay", "overlay.vert", "overlay.frag"},
+     {"mirrored", "shape.vert", "shape.frag", "#define MIRRORED\n", &GlApiInfo::clip_distance},
+     {"ground", "shape.vert", "ground.frag", "#define GROUND\n", &GlApiInfo::depth_clamp},
+     {"encode", "encode.vert", "encode.frag", "", &GlApiInfo::srgb_switch}}};
+
+// in front of every shader: the version, and what that leaves open
+std::string header(const GlApiInfo& api) {
+  std::string text = fmt::format("{}\n", api.glsl);
+  if (!api.attribute_slot) text += "#extension GL_ARB_explicit_attrib_location : require\n";
+  if (std::string_view(api.glsl).ends_with(" es")) {
+    for (const char* type : {"float", "int", "sampler2D", "sampler2DShadow"})
+      text += fmt::format("precision highp {};\n", type);
+  }
+  return text + fmt::format("#define CLIP_DISTANCE {:d}\n", static_cast<int>(api.clip_distance));
+}
 
 template <class Get>
 std::string log_of(GLuint name, Get get) {
@@ -72,9 +89,10 @@ std::string Shaders::placed(const std::string& log, const std::string& file, boo
   return printable(shortened(out, 1000));
 }
 
-Result<GLuint> Shaders::compile(GLenum kind, const std::string& file, bool inside) const {
-  const std::string text = fmt::format("#version 330 core\n{}#line 1\n{}\n#line {}\n{}", defines_,
-                                       text_of(kCommon, inside), kOwnLines + 1, text_of(file, inside));
+Result<GLuint> Shaders::compile(GLenum kind, const std::string& file, const std::string& defines, bool inside) const {
+  const int first = 1 - api_.line_offset;
+  const std::string text = fmt::format("{}{}{}#line {}\n{}\n#line {}\n{}", header(api_), defines_, defines, first,
+                                       text_of(kCommon, inside), kOwnLines + first, text_of(file, inside));
   const char* const source = text.c_str();
   const GLuint shader = glCreateShader(kind);
   glShaderSource(shader, 1, &source, nullptr);
@@ -88,9 +106,9 @@ Result<GLuint> Shaders::compile(GLenum kind, const std::string& file, bool insid
 }
 
 Result<GlProgram> Shaders::build(const Made& wanted, bool inside) const {
-  const Result<GLuint> vertex = compile(GL_VERTEX_SHADER, wanted.vertex, inside);
+  const Result<GLuint> vertex = compile(GL_VERTEX_SHADER, wanted.vertex, wanted.defines, inside);
   if (!vertex) return Error{vertex.error()};
-  const Result<GLuint> fragment = compile(GL_FRAGMENT_SHADER, wanted.fragment, inside);
+  const Result<GLuint> fragment = compile(GL_FRAGMENT_SHADER, wanted.fragment, wanted.defines, inside);
   if (!fragment) {
     glDeleteShader(*vertex);
     return Error{fragment.error()};
@@ -125,8 +143,9 @@ void Shaders::complain(const std::string& text) {
 Result<void> Shaders::start() {
   std::string fault;
   for (const ProgramFiles& files : kPrograms) {
+    if (files.unless != nullptr && api_.*files.unless) continue;
     Made& made = made_[files.name];
-    made = {files.vertex, files.fragment, {}};
+    made = {files.vertex, files.fragment, files.defines, {}};
     Result<GlProgram> program = build(made, folder_.empty());
     if (!program && !folder_.empty()) {
       fault = program.error();

@@ -17,7 +17,8 @@ class Shaders {
  public:
   /// `folder`: empty: only those inside the program are used. `defines`: lines in front of every file, such as
   /// "#define TAPS 4\n". [main]
-  Shaders(std::string folder, std::string defines) : folder_(std::move(folder)), defines_(std::move(defines)) {}
+  Shaders(GlApi api, std::string folder, std::string defines)
+      : api_(gl_api_info(api)), folder_(std::move(folder)), defines_(std::move(defines)) {}
 
   /// Makes all programs. An error: even those inside the program don't compile here. [main]
   Result<void> start();
@@ -35,14 +36,16 @@ class Shaders {
   struct Made {
     std::string vertex;  // files' names
     std::string fragment;
+    std::string defines;
     GlProgram program;
   };
   std::string text_of(const std::string& file, bool inside) const;
   Result<GlProgram> build(const Made& wanted, bool inside) const;
-  Result<GLuint> compile(GLenum kind, const std::string& file, bool inside) const;
+  Result<GLuint> compile(GLenum kind, const std::string& file, const std::string& defines, bool inside) const;
   std::string placed(const std::string& log, const std::string& file, bool inside) const;
   void complain(const std::string& text);
 
+  const GlApiInfo& api_;
   std::string folder_;
   std::string defines_;
   std::map<std::string, Made, std::less<>> made_;

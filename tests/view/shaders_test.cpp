@@ -58,7 +58,7 @@ TEST(Shaders, ASavedOneIsTakenABrokenOneIsNamed) {
   Stage stage;
   stage.add("box", box(Vec3(1)), {0, 0, 1});
   const auto now = stage.snapshot();
-  const auto made = Renderer::make(folder.path(), Quality::low);
+  const auto made = Renderer::make(context().api(), folder.path(), Quality::low);
   ASSERT_TRUE(made.ok()) << made.error();
   Renderer& renderer = **made;
   const auto picture = [&] {
@@ -90,14 +90,16 @@ TEST(Shaders, ASavedOneIsTakenABrokenOneIsNamed) {
 }
 
 TEST(Shaders, AFolderThatIsBrokenFromTheStartIsDrawnWithThoseInside) {
-  (void)context();
-  const ShaderFolder folder;
-  folder.write("sky.frag", "this is no shader\n");
-  const auto made = Renderer::make(folder.path(), Quality::low);
-  ASSERT_TRUE(made.ok()) << made.error();
-  EXPECT_NE((*made)->shader_fault().find("/sky.frag:1"), std::string::npos) << (*made)->shader_fault();
-  Stage stage;
-  EXPECT_TRUE((*made)->draw(*stage.snapshot(), 16, 9).ok());
+  for (const GlApi api : {GlApi::core, GlApi::es, GlApi::gl31}) {
+    (void)context(api);
+    const ShaderFolder folder;
+    folder.write("sky.frag", "out vec4 color;\nthis is no shader\n");
+    const auto made = Renderer::make(api, folder.path(), Quality::low);
+    ASSERT_TRUE(made.ok()) << made.error();
+    EXPECT_NE((*made)->shader_fault().find("/sky.frag:2"), std::string::npos) << (*made)->shader_fault();
+    Stage stage;
+    EXPECT_TRUE((*made)->draw(*stage.snapshot(), 16, 9).ok());
+  }
 }
 
 }  // namespace

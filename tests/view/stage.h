@@ -72,38 +72,57 @@ class Stage {
   Publisher publisher_{world, latest_};
 };
 
-/// One context for the whole program.
-inline Offscreen& context() {
-  static const Result<std::unique_ptr<Offscreen>> made = Offscreen::make();
-  if (!made) {
-    ADD_FAILURE() << made.error();
-    std::abort();
-  }
-  return **made;
-}
-
-inline Renderer& renderer(Quality quality) {
-  (void)context();  // made before them, it goes after them
-  static std::map<Quality, std::unique_ptr<Renderer>> made;
-  std::unique_ptr<Renderer>& one = made[quality];
+/// One context of each kind for the whole program, made current.
+inline Offscreen& context(GlApi api = GlApi::core) {
+  static std::map<GlApi, std::unique_ptr<Offscreen>> made;
+  std::unique_ptr<Offscreen>& one = made[api];
   if (one == nullptr) {
-    Result<std::unique_ptr<Renderer>> fresh = Renderer::make("", quality);
+    Result<std::unique_ptr<Offscreen>> fresh = Offscreen::make(gl_api_info(api).option);
     if (!fresh) {
       ADD_FAILURE() << fresh.error();
       std::abort();
     }
     one = std::move(*fresh);
   }
+  one->use();
   return *one;
 }
 
-inline Pixels draw(const Snapshot& now, int width = 160, int height = 90, Quality quality = Quality::low) {
-  const Result<void> drawn = renderer(quality).draw(now, width, height);
-  EXPECT_TRUE(drawn.ok()) << drawn.error();
-  return renderer(quality).read();
+inline Renderer& renderer(Quality quality, GlApi api = GlApi::core) {
+  // a renderer's objects are deleted in its context, which it goes before
+  struct Made {
+    GlApi api = GlApi::core;
+    std::unique_ptr<Renderer> renderer;
+    Made() = default;
+    Made(const Made&) = delete;
+    Made& operator=(const Made&) = delete;
+    ~Made() { (void)context(api); }
+  };
+  (void)context(api);
+  static std::map<std::pair<GlApi, Quality>, Made> made;
+  Made& one = made[{api, quality}];
+  if (one.renderer == nullptr) {
+    Result<std::unique_ptr<Renderer>> fresh = Renderer::make(api, "", quality);
+    if (!fresh) {
+      ADD_FAILURE() << fresh.error();
+      std::abort();
+    }
+    one.api = api;
+    one.renderer = std::move(*fresh);
+  }
+  return *one.renderer;
 }
-inline Pixels draw(Stage& stage, int width = 160, int height = 90, Quality quality = Quality::low) {
-  return draw(*stage.snapshot(), width, height, quality);
+
+inline Pixels draw(const Snapshot& now, int width = 160, int height = 90, Quality quality = Quality::low,
+                   GlApi api = GlApi::core) {
+  Renderer& renderer = view_test::renderer(quality, api);
+  const Result<void> drawn = renderer.draw(now, width, height);
+  EXPECT_TRUE(drawn.ok()) << drawn.error();
+  return renderer.read();
+}
+inline Pixels draw(Stage& stage, int width = 160, int height = 90, Quality quality = Quality::low,
+                   GlApi api = GlApi::core) {
+  return draw(*stage.snapshot(), width, height, quality, api);
 }
 
 /// Red, green, blue, 0 .. 255.

@@ -53,4 +53,6 @@ void* find_symbol(const char* name) {
   return nullptr;
 }
 
+bool load_library(const char* file) { return dlopen(file, RTLD_LAZY | RTLD_LOCAL) != nullptr; }
+
 }  // namespace limber::system

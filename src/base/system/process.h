@@ -32,5 +32,7 @@ double heap_bytes();
 
 /// The function of this name in the program or a library that it has loaded. Null: none.
 void* find_symbol(const char* name);
+/// Loads a shared library for the rest of the process: "libEGL.so.1". False where it can't be loaded.
+bool load_library(const char* file);
 
 }  // namespace limber::system

@@ -1,0 +1,69 @@
+// A display of the test's own, with hands and eyes.
+#pragma once
+
+#include "app/program.h"
+
+namespace limber::app_test {
+
+/// An X server without a screen; it chooses its number itself.
+class Display {
+ public:
+  /// `more`: further arguments of the server.
+  explicit Display(const std::string& screen = "320x240x24", const std::vector<std::string>& more = {})
+      : server_(with({"Xvfb", "-displayfd", "1", "-screen", "0", screen, "-nolisten", "tcp", "-fbdir", folder_.path()},
+                     more)) {
+    EXPECT_TRUE(server_.wait_for("\n", true)) << "apt-get install xvfb\n" << server_.err();
+    name_ = ":" + server_.out().substr(0, server_.out().find('\n'));
+  }
+  void end() { server_.signal(SIGKILL); }
+  std::vector<std::string> environment() const {
+    std::vector<std::string> all = without_leak_search();
+    all.insert(all.end(),
+               {"DISPLAY=" + name_, "LIBGL_ALWAYS_SOFTWARE=1", "XDG_CONFIG_HOME=" + (folder_.path() + "/config"),
+                "XDG_STATE_HOME=" + (folder_.path() + "/state")});
+    return all;
+  }
+  /// Hands of somebody at this display. Keys go to the window under the pointer.
+  void xdotool(std::vector<std::string> words) const {
+    words.insert(words.begin(), "xdotool");
+    std::vector<std::string> all = environment();
+    all.insert(all.end(), words.begin(), words.end());
+    const Ran ran = Running(all).finish();
+    EXPECT_EQ(ran.code, 0) << "apt-get install xdotool\n" << ran.err;
+  }
+  /// The colour of a pixel of the screen, 0xrrggbb, as the server's file of it has it (XWD: 25 numbers, colours, rows).
+  unsigned pixel(std::size_t x, std::size_t y) const {
+    const std::string screen = content(folder_.path() + "/Xvfb_screen0");
+    const auto number = [&](std::size_t i) {
+      unsigned value = 0;
+      for (std::size_t k = 0; k < 4; k++) value = value << 8 | static_cast<unsigned char>(screen[4 * i + k]);
+      return value;
+    };
+    if (screen.size() < 100) return 0;
+    const std::size_t at = number(0) + std::size_t{12} * number(19) + y * number(12) + 4 * x;
+    if (at + 4 > screen.size()) return 0;
+    unsigned color = 0;
+    for (std::size_t k = 3; k-- > 0;) color = color << 8 | static_cast<unsigned char>(screen[at + k]);
+    return color;
+  }
+  std::string settings() const { return content(folder_.path() + "/config/limber/panel.json"); }
+
+ private:
+  static std::vector<std::string> with(std::vector<std::string> words, const std::vector<std::string>& more) {
+    words.insert(words.end(), more.begin(), more.end());
+    return words;
+  }
+
+  Folder folder_;
+  Running server_;
+  std::string name_;
+};
+
+/// Arguments for a small window without a network.
+inline std::vector<std::string> quiet(const std::string& scene, std::vector<std::string> more = {}) {
+  std::vector<std::string> args = {scene, "--osc-in", "off", "--osc-out", "off", "--query", "off", "--size", "64x36"};
+  args.insert(args.end(), more.begin(), more.end());
+  return args;
+}
+
+}  // namespace limber::app_test
