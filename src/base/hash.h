@@ -50,6 +50,8 @@ class NumberHash {
     mix(b_, b);
     mix(c_, c);
   }
+  /// A word, such as another hash.
+  constexpr void add_word(std::uint64_t word) { mix(d_, word); }
   constexpr void add(const std::array<std::uint64_t, 4>& words) {
     mix(a_, words[0]);
     mix(b_, words[1]);

@@ -21,6 +21,7 @@ class Random {
   }
 
   std::uint64_t next() {
+    drawn_ = 1;
     const std::uint64_t result = std::rotl(state_[1] * 5, 7) * 9;
     const std::uint64_t t = state_[1] << 17;
     state_[2] ^= state_[0];
@@ -48,11 +49,14 @@ class Random {
     return {r * fixed::cos(angle), r * fixed::sin(angle), z};
   }
 
-  /// For the state hash and for takes.
+  /// For the state hash.
   const std::array<std::uint64_t, 4>& state() const { return state_; }
+  /// Whether next() was called since it was seeded; until then it adds nothing to the state hash.
+  bool drawn() const { return drawn_ != 0; }
 
  private:
   std::array<std::uint64_t, 4> state_{};
+  std::uint64_t drawn_ = 0;  // as wide as the state: checkpoints copy the bytes, and there is no padding
 };
 
 }  // namespace limber

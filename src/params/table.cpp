@@ -1,10 +1,13 @@
 // Tables: layout of the rows, look-up by name.
 #include "params/table.h"
 
+#include <bit>
+
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
 #include "base/check.h"
+#include "base/hash.h"
 #include "base/text.h"
 #include "params/units.h"
 
@@ -57,6 +60,13 @@ Table::Table(std::string name, std::string path, std::string seed, std::vector<R
     std::uint32_t& width = row.live ? live_width_ : kept_width_;
     row.offset = width;
     width += row.width;
+    row.hashed = row.hashed || row.writable();
+    std::uint64_t key = hash_bytes(row.name);
+    for (std::uint32_t number = 0; number < row.width; number++) {
+      const std::uint64_t next = splitmix64(key);
+      (row.live ? hashed_live_ : hashed_kept_)
+          .push_back({row.hashed ? next : 0, std::bit_cast<std::uint64_t>(row.initial[number])});
+    }
   }
 }
 
@@ -170,6 +180,11 @@ Row live(Row row) {
 
 Row axes(Row row) {
   row.own_axis = true;
+  return row;
+}
+
+Row hashed(Row row) {
+  row.hashed = true;
   return row;
 }
 

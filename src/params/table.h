@@ -57,6 +57,7 @@ struct Row {
   bool own_axis = false;  ///< vec3 and flags3 of joints and motors: one number means the own axis (booleans: all).
   bool turns = false;     ///< vec3: the turn Rx·Ry·Rz, degrees. Between two of them lies a rotation.
   bool live = false;      ///< Stored in the live block: changes by itself, part of every snapshot.
+  bool hashed = false;  ///< Part of the state hash: every stored property and state is, a readout where it is declared.
 
   void (*effect)(void* thing) = nullptr;  ///< Brings a changed value into the world; once, before the next step.
   bool apart = false;  ///< The effect touches what is this thing's alone: of many things they may run side by side.
@@ -83,6 +84,13 @@ struct Row {
 /// "0 .. 10", or with ranges of their own "0 1 2 .. 5 5 5".
 std::string range_text(const Row& row);
 
+/// A number of a node's block as the state hash sees it.
+struct HashedNumber {
+  std::uint64_t key = 0;  ///< Of the row's name and the number's place in the row, not of the row's place in the table.
+  std::uint64_t initial =
+      0;  ///< Bits of the default. A number that has them adds nothing, nor does one whose key is 0.
+};
+
 class Table;
 /// A table for rows that are known only while the program runs (a scene's parameters, a behaviour's). It lives as long
 /// as the program, since stores keep tables by address; an equal one is used again. [any]
@@ -103,6 +111,9 @@ class Table {
   const Row& row(std::uint32_t index) const { return rows_[index]; }
   std::uint32_t kept_width() const { return kept_width_; }
   std::uint32_t live_width() const { return live_width_; }
+  /// For each number of the kept block, or of the live block.
+  std::span<const HashedNumber> hashed_kept() const { return hashed_kept_; }
+  std::span<const HashedNumber> hashed_live() const { return hashed_live_; }
   void fetch(const void* thing) const {
     if (fetch_ != nullptr) fetch_(thing);
   }
@@ -121,6 +132,8 @@ class Table {
   std::vector<std::string> plain_;
   std::uint32_t kept_width_ = 0;
   std::uint32_t live_width_ = 0;
+  std::vector<HashedNumber> hashed_kept_;
+  std::vector<HashedNumber> hashed_live_;
   void (*fetch_)(const void* thing) = nullptr;
 };
 
@@ -142,6 +155,8 @@ Row state(Row row);
 Row readout(Row row);
 Row live(Row row);
 Row axes(Row row);
+/// A readout as part of the state hash.
+Row hashed(Row row);
 /// The three numbers as a turn.
 Row turns(Row row);
 /// Its effect as one that many things may have side by side.

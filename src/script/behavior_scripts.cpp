@@ -104,7 +104,7 @@ void BehaviorScripts::pass_memory(KeyBytes& key) { key.pass_all(generators_, dro
 std::uint64_t BehaviorScripts::hash(std::uint64_t start) const {
   NumberHash numbers(start);
   for (const FileGenerator& generator : generators_) {
-    if (generator.now.seeded) numbers.add(generator.now.random.state());
+    if (generator.now.random.drawn()) numbers.add(generator.now.random.state());
   }
   return numbers.value();
 }

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include "base/hash.h"
+#include "params/values_hash.h"
 #include "script/behavior_scripts.h"
 #include "script/guard.h"
 
@@ -58,11 +59,9 @@ Random& ScriptContext::generator() {
   return random;
 }
 
-std::uint64_t ScriptContext::hash(std::uint64_t start) {
-  NumberHash numbers(behaviors->hash(start));
-  numbers.add(generator().state());
-  if (params != nullptr)
-    numbers.add({std::as_const(world->store()).kept_block(params->id()), params->table().kept_width()});
+std::uint64_t ScriptContext::hash(std::uint64_t start) const {
+  NumberHash numbers(behaviors->hash(start) + (params != nullptr ? kept_hash(world->store(), params->id()) : 0));
+  if (random.drawn()) numbers.add(random.state());
   return numbers.value();
 }
 

@@ -58,8 +58,8 @@ struct ScriptContext {
   std::optional<std::uint64_t> seeded_with;
   Random random;
   Random& generator();
-  /// The world's hash with the bits of the generators of all files, and of the scene's parameters.
-  std::uint64_t hash(std::uint64_t start);
+  /// The world's hash with the bits of the generators that were drawn from, and of the scene's parameters.
+  std::uint64_t hash(std::uint64_t start) const;
 
   // gathered by several calls before the one that makes something of them
   std::vector<Vec3> mesh_points;

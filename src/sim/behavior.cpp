@@ -9,6 +9,7 @@
 
 #include "base/hash.h"
 #include "base/text.h"
+#include "params/values_hash.h"
 #include "sim/behavior_group.h"
 #include "sim/behavior_list.h"
 #include "sim/world.h"
@@ -228,8 +229,8 @@ void Behavior::prepare() {
 
 std::uint64_t Behavior::state_hash(std::uint64_t hash) const {
   NumberHash numbers(hash_bytes(type_->name, hash_bytes(name(), hash)));
-  numbers.add({std::as_const(store()).kept_block(id_), type_->table->kept_width()});
-  numbers.add(random_.state());
+  numbers.add_word(kept_hash(store(), id_));
+  if (random_.drawn()) numbers.add(random_.state());
   for (const Beat& beat : beats_) numbers.add(beat.anchor, beat.interval, beat.count);
   return numbers.value();
 }

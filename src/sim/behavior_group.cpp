@@ -11,6 +11,7 @@
 #include "base/log.h"
 #include "base/system/clock.h"
 #include "base/text.h"
+#include "params/values_hash.h"
 #include "sim/behavior_list.h"
 #include "sim/world.h"
 
@@ -225,7 +226,7 @@ void BehaviorGroup::step(double dt) {
 
 std::uint64_t BehaviorGroup::state_hash(std::uint64_t hash) const {
   NumberHash numbers(hash_bytes(name(), hash));
-  numbers.add({std::as_const(world_.store()).kept_block(id_), type_->group_table->kept_width()});
+  numbers.add_word(kept_hash(world_.store(), id_));
   return numbers.value();
 }
 

@@ -11,6 +11,7 @@
 #include "base/hash.h"
 #include "base/log.h"
 #include "base/text.h"
+#include "params/values_hash.h"
 #include "sim/behavior_list.h"
 #include "sim/spin.h"
 #include "sim/world.h"
@@ -337,14 +338,9 @@ void Body::say_caps() {
 
 std::uint64_t Body::state_hash(std::uint64_t hash) const {
   const Store& values = store();
-  NumberHash numbers(hash_bytes(name(), hash) ^ (enabled() ? 1u : 0u));
-  const auto add_kept = [&](NodeId id, const Table& table) {
-    numbers.add({values.kept_block(id), table.kept_width()});
-  };
-  const auto add_live = [&](NodeId id, const Table& table) {
-    numbers.add({values.live_block(id), table.live_width()});
-  };
-  add_kept(id_, table());
+  NumberHash numbers(hash_bytes(name(), hash));
+  const auto add_node = [&](NodeId id) { numbers.add_word(node_hash(values, id)); };
+  add_node(id_);
   if (parts_.empty()) {
     std::array<double, 7> pose{};
     put(pose.data(), planned_.position);
@@ -353,14 +349,10 @@ std::uint64_t Body::state_hash(std::uint64_t hash) const {
   }
   for (const auto& part : parts_) {
     add_motion(numbers, part->rigid());
-    add_live(part->id(), Part::table());
-    add_kept(part->id(), Part::table());
+    add_node(part->id());
   }
-  for (const auto& joint : joints_) {
-    add_live(joint->id(), Joint::table());
-    add_kept(joint->id(), Joint::table());
-  }
-  for (const auto& motor : motors_) add_kept(motor->id(), Motor::table());
+  for (const auto& joint : joints_) add_node(joint->id());
+  for (const auto& motor : motors_) add_node(motor->id());
   for (const PartPair& pair : pairs_.list) {
     numbers.add(static_cast<double>(pair.a), static_cast<double>(pair.b), pair.excluded() ? 1 : 0);
   }

@@ -15,8 +15,8 @@ class World;
 class MotionHash {
  public:
   explicit MotionHash(const World& world) : world_(world) {}
-  /// Over the tick, which bodies are on, and the bits of all poses and velocities as they are read. Allocates nothing
-  /// while nothing comes or goes.
+  /// Over the tick, which bodies are enabled, and the bits of all poses and velocities as they are read: of these rows
+  /// alone, so that new ones leave it as it is. Allocates nothing while nothing comes or goes.
   std::uint64_t now();
   /// Of each body by itself at that moment, in their order.
   std::span<const std::uint64_t> bodies() const { return bodies_; }

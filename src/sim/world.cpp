@@ -9,6 +9,7 @@
 #include "base/log.h"
 #include "base/system/clock.h"
 #include "base/text.h"
+#include "params/values_hash.h"
 #include "sim/health.h"
 
 namespace limber {
@@ -389,13 +390,12 @@ void World::settle_healed() {
 }
 
 std::uint64_t World::state_hash() const {
-  NumberHash numbers(hash_bytes(panic_.on() ? "panic" : "limber"));
-  const auto add_kept = [&](NodeId id) {
-    numbers.add({std::as_const(store_).kept_block(id), store_.table(id).kept_width()});
-  };
-  for (const NodeId id : {id_, visuals_->id(), visuals_->camera().id(), visuals_->look().id()}) add_kept(id);
-  for (const auto& shape : shapes_) add_kept(shape->id());
-  for (const auto& gear : gears_) add_kept(gear->id());
+  std::uint64_t fixed = 0;
+  for (const NodeId id : {id_, visuals_->id(), visuals_->camera().id(), visuals_->look().id()})
+    fixed += fixed_node_hash(store_, id);
+  NumberHash numbers(hash_bytes(panic_.on() ? "panic" : "limber") + fixed);
+  for (const auto& shape : shapes_) numbers.add_word(kept_hash(store_, shape->id()));
+  for (const auto& gear : gears_) numbers.add_word(kept_hash(store_, gear->id()));
   numbers.add(time(), static_cast<double>(tick_), static_cast<double>(seed()));
   std::uint64_t hash = numbers.value();
   for (const auto& body : bodies_) hash = body->state_hash(hash);

@@ -2,6 +2,7 @@
 #include <bit>
 #include <cmath>
 
+#include "engine/edited.h"
 #include "engine/everything.h"
 #include "engine/show.h"
 
@@ -60,6 +61,65 @@ TEST(Hash, DependsOnSeedNamesAndDraws) {
   EXPECT_NE(hash_of(one, 1, 9), hash_of(one, 1, 10));
   EXPECT_NE(hash_of(one, 1, 9), hash_of(two, 1, 9));
   EXPECT_NE(hash_of(one, 1, 9), hash_of(three, 1, 9)) << "a draw more or less";
+}
+
+// a show of a scene and a behavior's file, under other names
+std::uint64_t hash_of_show(const std::string& scene, const std::string& behavior, const std::string& name,
+                           bool asked_on_the_way = false) {
+  const ShowFolder folder;
+  folder.write("scripts/" + name, scene);
+  folder.write("behaviors_lua/nod.lua", behavior);
+  Show show(folder.path("scripts/" + name));
+  for (int i = 0; i < 20; i++) {
+    if (asked_on_the_way) (void)show.engine.state_hash();
+    show.ticks(1);
+  }
+  return show.engine.state_hash();
+}
+
+constexpr const char* kNodScene = R"(
+params { { "wind", 0.5, min = 0, max = 2 }, --NEW
+}
+local arm = sim:load_urdf(")" LIMBER_SOURCE_DIR R"(/urdf/arm6.urdf", { name = "arm" })
+arm:add_behavior("nod", "nod", { depth = 0.3 })
+sim:at(0.1, function() params.wind = 0.75 end)
+)";
+constexpr const char* kNod = R"(return behavior {
+  params = { --NEW
+    { "depth", 0.1, min = 0, max = 1 } },
+  step = function(self) for _, motor in ipairs(self.motors) do motor.target = self.depth end end,
+}
+)";
+
+std::string with_new(std::string text, const std::string& added) { return text.replace(text.find("--NEW"), 5, added); }
+
+TEST(Hash, NewParametersAtTheirDefaultsAddNothing) {
+  const std::uint64_t before = hash_of_show(kNodScene, kNod, "nod.lua");
+  const std::string added = R"({ "lift", vec3(1, 2, 3) }, { "style", "calm", choices = { "calm", "wild" } },)";
+  EXPECT_EQ(hash_of_show(with_new(kNodScene, added), kNod, "nod.lua"), before);
+  EXPECT_EQ(hash_of_show(kNodScene, with_new(kNod, added), "nod.lua"), before);
+  const std::string other = "arm:behavior('nod').style = 'wild'\n";
+  EXPECT_NE(hash_of_show(kNodScene + other, with_new(kNod, added), "nod.lua"), before);
+  EXPECT_NE(
+      hash_of_show(with_new(kNodScene, added) + "sim:at(0.2, function() params.style = 'wild' end)\n", kNod, "nod.lua"),
+      before);
+}
+
+TEST(Hash, GeneratorsThatAreNotDrawnFromAddNothing) {
+  // a scene's generator begins with the name of its file
+  EXPECT_EQ(hash_of_show(kNodScene, kNod, "a.lua"), hash_of_show(kNodScene, kNod, "b.lua"));
+  const std::string draws = std::string(kNodScene) + "sim:at(0.1, function() rng:uniform() end)\n";
+  EXPECT_NE(hash_of_show(draws, kNod, "a.lua"), hash_of_show(kNodScene, kNod, "a.lua"));
+  EXPECT_NE(hash_of_show(draws, kNod, "a.lua"), hash_of_show(draws, kNod, "b.lua"));
+}
+
+TEST(Hash, AskingForItChangesNothing) {
+  // the seed that is in force at the first draw counts
+  const std::string scene = std::string(kNodScene) + R"(
+sim:at(0.1, function() sim.seed = 5 end)
+sim:at(0.2, function() arm:part("tip"):apply_impulse(rng:direction()) end)
+)";
+  EXPECT_EQ(hash_of_show(scene, kNod, "a.lua", true), hash_of_show(scene, kNod, "a.lua", false));
 }
 
 }  // namespace
