@@ -98,7 +98,7 @@ bool Guard::arm() {
   luaJIT_profile_start(state_, "li1000000000", no_profile, nullptr);
   // only its handler is wanted, not its clock
   leave_compiled_code = system::take_profile_handler();
-  if (compiles_like_interpreter()) luaJIT_setmode(state_, 0, LUAJIT_MODE_ENGINE | LUAJIT_MODE_ON);
+  if (limits_.compiled && compiles_like_interpreter()) luaJIT_setmode(state_, 0, LUAJIT_MODE_ENGINE | LUAJIT_MODE_ON);
   live_ = true;
   return true;
 }

@@ -1,0 +1,126 @@
+# shellcheck shell=bash disable=SC2046,SC2086,SC2154
+# The golden scenes on every platform that this machine can build or emulate, in one table: docs/hashes.md.
+
+hash_folder=build/check/hashes
+
+# row PLATFORM RUN-COMMAND...: plays the scenes; LIMBER_GOLDEN_OUT names the file for the lines
+hash_row() {
+  local platform=$1 file
+  shift
+  file=$hash_folder/$(printf '%s' "$platform" | tr -c 'a-zA-Z0-9' _)
+  rm -f "$file".*
+  printf '%s\n' "$platform" >"$file.name"
+  LIMBER_GOLDEN_OUT=$PWD/$file.lines "$@" >"$file.log" 2>&1
+  [ -s "$file.lines" ] || printf 'it did not play: %s\n' "$(grep -vE '^\s*$' "$file.log" | tail -n 1 | cut -c1-120)" >"$file.missing"
+}
+
+# left_out PLATFORM REASON
+hash_left_out() {
+  local file
+  file=$hash_folder/$(printf '%s' "$1" | tr -c 'a-zA-Z0-9' _)
+  rm -f "$file".*
+  printf '%s\n' "$1" >"$file.name"
+  printf '%s\n' "$2" >"$file.missing"
+}
+
+golden_filter='Scenes/*:GoldenShow.*'
+golden_filter_one='Scenes/*_1:GoldenShow.*'
+
+cpu_has() { grep -qw -- "$1" /proc/cpuinfo; }
+
+# the newest clang++ of the system
+newest_clang() { { command -v clang++; compgen -c clang++- | grep -xE 'clang\+\+-[0-9]+'; } | sort -V | tail -n 1; }
+
+# hash_build LABEL COMPILER ARCHITECTURE: plays it as a row
+hash_build() {
+  local label=$1 compiler=$2 architecture=$3 folder
+  folder=build/hashes/${compiler##*/}_$architecture
+  if .ci/golden lines --folder "$folder" --threads 0 -- -DCMAKE_CXX_COMPILER="$compiler" \
+    -DCMAKE_CXX_FLAGS="-march=$architecture" >"$hash_folder/build.log" 2>&1; then
+    hash_row "$label" "$folder/test_golden" --gtest_filter="$golden_filter"
+  else
+    hash_left_out "$label" "it could not be built: $(tail -n 1 "$hash_folder/build.log" | cut -c1-120)"
+  fi
+}
+
+hash_compilers() {
+  local compiler architecture architectures="x86-64 x86-64-v2 x86-64-v3" clang
+  clang=$(newest_clang)
+  if cpu_has avx512f && cpu_has avx512bw && cpu_has avx512dq; then architectures+=" x86-64-v4"; else
+    hash_left_out "AVX-512 (-march=x86-64-v4)" "the processor has no AVX-512"
+  fi
+  for compiler in g++ $clang; do
+    for architecture in $architectures; do
+      # each compiler at the lowest, with AVX2 and with AVX-512
+      [ "$architecture" = x86-64-v2 ] || hash_build "$(system_name), $($compiler -dumpversion | sed "s/^/${compiler%%-*} /"), -march=$architecture" \
+        "$compiler" "$architecture"
+    done
+  done
+}
+
+# the same program with another library or processor beneath it
+hash_surroundings() {
+  local program=build/test_golden here
+  here=$(system_name)
+  hash_row "$here, compiled Lua off" env LIMBER_GOLDEN_JIT=off $program --gtest_filter="$golden_filter_one"
+  if [ "$(hash_probe)" != "$(GLIBC_TUNABLES=glibc.cpu.hwcaps=-FMA,-AVX2 hash_probe)" ]; then
+    hash_row "$here, glibc without FMA (GLIBC_TUNABLES=glibc.cpu.hwcaps=-FMA,-AVX2)" \
+      env GLIBC_TUNABLES=glibc.cpu.hwcaps=-FMA,-AVX2 $program --gtest_filter="$golden_filter"
+  else
+    hash_left_out "glibc without FMA" "GLIBC_TUNABLES changes no result of the math library here"
+  fi
+  if gcc -O1 -fno-builtin -shared -fPIC -o $hash_folder/other_libm.so .ci/other_libm.c 2>$hash_folder/build.log; then
+    hash_row "$here, a math library whose results are one unit off (.ci/other_libm.c)" \
+      env LD_PRELOAD=$PWD/$hash_folder/other_libm.so $program --gtest_filter="$golden_filter"
+  fi
+  if command -v qemu-x86_64 >/dev/null; then
+    hash_row "$here, qemu-x86_64 -cpu Nehalem (SSE 4.2, neither AVX nor FMA)" \
+      qemu-x86_64 -cpu Nehalem $program --gtest_filter="$golden_filter_one"
+  else
+    hash_left_out "qemu-x86_64 -cpu Nehalem" "qemu-user is not installed"
+  fi
+}
+
+# a number that depends on how the C library computes the functions
+hash_probe() {
+  local program=$hash_folder/probe
+  [ -x $program ] || gcc -O1 -fno-builtin -x c -o $program - -lm <<'TEXT'
+#include <math.h>
+#include <stdio.h>
+int main(void) {
+  double sum = 0;
+  for (int i = 1; i < 20000; i++) sum += sin(i * 0.0137) * exp(i * -1e-3) + pow(i, 0.7) * log(i) + atan(i * 0.1);
+  printf("%a\n", sum);
+}
+TEXT
+  $program
+}
+
+# hash_chroot RELEASE LABEL
+hash_chroot() {
+  local label=$2
+  if [ "$(id -u)" != 0 ] || ! command -v debootstrap >/dev/null; then
+    hash_left_out "$label" "it needs root and debootstrap"
+    return
+  fi
+  hash_row "$label" bash -c '.ci/chroot "$0" .ci/golden lines | tee "$LIMBER_GOLDEN_OUT.all" >&2
+    sed -n "s/^golden: //p" "$LIMBER_GOLDEN_OUT.all" >"$LIMBER_GOLDEN_OUT"; rm -f "$LIMBER_GOLDEN_OUT.all"' "$1"
+}
+
+# --long hashes: the golden scenes with each compiler, processor and release that is at hand; writes docs/hashes.md
+long_hashes() {
+  mkdir -p $hash_folder && rm -f $hash_folder/*
+  configure release build -DLIMBER_TESTS=ON
+  build build test_golden || return
+  hash_compilers
+  hash_surroundings
+  hash_chroot trixie "Debian 13 (trixie)"
+  hash_chroot sid "Debian sid"
+  if declare -F hash_arm64 >/dev/null; then hash_arm64; else hash_left_out "arm64" "it is not built here"; fi
+  if python3 .ci/hash_table.py $hash_folder docs/hashes.md >$hash_folder/verdict; then
+    pass
+  else
+    fail "hashes differ: $(tr '\n' ';' <$hash_folder/verdict)"
+  fi
+  say "$(tail -n 1 $hash_folder/verdict)"
+}

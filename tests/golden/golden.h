@@ -1,0 +1,212 @@
+// Plays golden scenes by their scores, and reads the table of their hashes. LIMBER_GOLDEN_LOG=1: with their messages.
+// LIMBER_GOLDEN_JIT=off: LuaJIT interprets.
+#pragma once
+
+#include <unistd.h>
+
+#include <algorithm>
+#include <cstdlib>
+#include <map>
+#include <optional>
+
+#include <fmt/format.h>
+
+#include "base/log.h"
+#include "engine/engine.h"
+#include "golden/score.h"
+
+namespace limber::golden {
+
+namespace fs = std::filesystem;
+
+inline const fs::path kFolder = fs::path(LIMBER_SOURCE_DIR) / "tests/golden";
+
+/// What a run came to, as a line of hashes.txt has it.
+struct Outcome {
+  std::uint64_t ticks = 0;
+  std::uint64_t hash = 0;
+  bool operator==(const Outcome&) const = default;
+};
+
+inline std::string text_of(const Outcome& outcome) { return fmt::format("{} {:016x}", outcome.ticks, outcome.hash); }
+
+/// Names of the scenes, in alphabetical order.
+inline std::vector<std::string> scene_names() {
+  std::vector<std::string> names;
+  for (const auto& entry : fs::directory_iterator(kFolder / "scenes")) {
+    if (entry.path().extension() == ".lua") names.push_back(entry.path().stem().string());
+  }
+  std::sort(names.begin(), names.end());
+  return names;
+}
+
+/// Lines "name ticks hash"; # begins a comment.
+inline std::map<std::string, Outcome> golden_hashes() {
+  std::map<std::string, Outcome> table;
+  std::ifstream in(kFolder / "hashes.txt");
+  EXPECT_TRUE(in.good()) << "tests/golden/hashes.txt is missing";
+  for (std::string line; std::getline(in, line);) {
+    if (line.empty() || line.front() == '#') continue;
+    std::istringstream words(line);
+    std::string name;
+    Outcome outcome;
+    words >> name >> outcome.ticks >> std::hex >> outcome.hash;
+    EXPECT_FALSE(words.fail()) << "hashes.txt: " << line;
+    EXPECT_TRUE(table.emplace(name, outcome).second) << "hashes.txt: " << name << " has two lines";
+  }
+  return table;
+}
+
+/// A folder of its own that holds the scene's file, so that what a show writes stays out of the sources.
+class ScratchShow {
+ public:
+  /// The file keeps its name, since generators begin with it.
+  ScratchShow(const std::string& name, int threads, const std::string& text)
+      : folder_(fs::path(::testing::TempDir()) / fmt::format("limber_golden_{}_{}_{}", ::getpid(), name, threads)),
+        scene_(folder_ / "scripts" / (name + ".lua")) {
+    fs::create_directories(scene_.parent_path());
+    write(text);
+  }
+  ~ScratchShow() {
+    std::error_code ignored;
+    fs::remove_all(folder_, ignored);
+  }
+  ScratchShow(const ScratchShow&) = delete;
+  ScratchShow& operator=(const ScratchShow&) = delete;
+
+  void write(const std::string& text) const { std::ofstream(scene_, std::ios::binary) << text; }
+  std::string scene() const { return scene_.string(); }
+  std::string take() const { return (folder_ / "run.take").string(); }
+
+ private:
+  fs::path folder_;
+  fs::path scene_;
+};
+
+inline EngineOptions golden_options(int threads) {
+  EngineOptions options;
+  options.scene_options.data_dir = LIMBER_SOURCE_DIR;
+  // a call that is stopped after some time would depend on the machine
+  options.scene_options.limits.call_ms = 600000;
+  const char* const compiler = std::getenv("LIMBER_GOLDEN_JIT");
+  options.scene_options.limits.compiled = compiler == nullptr || std::string_view(compiler) != "off";
+  options.fast = true;
+  options.print = false;
+  options.threads = threads;
+  return options;
+}
+
+/// One scene from its start to the end of its score.
+class ScenePlay {
+ public:
+  /// `file`: below tests/golden.
+  ScenePlay(const fs::path& file, int threads)
+      : text_(text_of_file(kFolder / file)),
+        score_(score_of(text_)),
+        show_(file.stem().string(), threads, text_),
+        threads_(threads) {}
+
+  Outcome play() {
+    log_to_stderr(std::getenv("LIMBER_GOLDEN_LOG") != nullptr);
+    EngineOptions options = golden_options(threads_);
+    options.scene = show_.scene();
+    if (score_.take) options.record = show_.take();
+    Engine engine(link_, options);
+    engine_ = &engine;
+    const Result<void> started = engine.start();
+    EXPECT_TRUE(started.ok()) << started.error();
+    if (!started) return {};
+    std::size_t next = 0;
+    for (pass_ = 0; pass_ < score_.ticks; pass_++) {
+      if (again_ && again_->first == pass_) end_again();
+      for (; next < score_.lines.size() && score_.lines[next].pass == pass_; next++) perform(score_.lines[next]);
+      engine.tick();
+    }
+    if (again_) end_again();
+    EXPECT_EQ(next, score_.lines.size()) << "the score has lines behind its last pass";
+    EXPECT_EQ(engine.faults(), score_.faults) << "script errors, refused values, health events" << refusals();
+    const Outcome outcome{engine.world().tick(), engine.state_hash()};
+    if (score_.take) {
+      engine.end_take();
+      engine.finish_saving();
+    }
+    return outcome;
+  }
+
+  bool recorded() const { return score_.take; }
+  std::string take() const { return show_.take(); }
+
+ private:
+  /// Messages /error, which answered what was refused.
+  std::string refusals() {
+    std::string text;
+    std::vector<Outgoing> out;
+    link_.outbox.drain(out);
+    for (const Outgoing& each : out) {
+      if (each.message.address != "/error") continue;
+      for (const Arg& arg : each.message.args) text += "\n" + arg.text;
+    }
+    return text;
+  }
+
+  void send(Message message) { link_.inbox.push({{std::move(message)}, {Hand::osc, 0x7f000001, 4000}}); }
+
+  void perform(const ScoreLine& line) {
+    if (line.verb == "send" || line.verb == "flood") {
+      for (int i = 0; i < line.count; i++) send(line.message);
+    } else if (line.verb == "eval") {
+      auto wish = std::make_shared<Evaluate>();
+      wish->text = line.text;
+      wish->answer = [](const Evaluation&) {};
+      link_.inbox.push({{}, {Hand::console}, std::move(wish)});
+    } else if (line.verb == "replace" || line.verb == "reload") {
+      reload(line);
+    } else {
+      if (line.verb == "again") again_ = {pass_ + line.count, engine_->state_hash()};
+      send({"/transport/rewind_ticks", {Arg::of(static_cast<double>(line.count))}});
+    }
+  }
+
+  void reload(const ScoreLine& line) {
+    if (line.verb == "replace") {
+      const std::size_t at = text_.rfind(line.text);
+      ASSERT_FALSE(at == std::string::npos || text_.rfind("--@ ") > at) << line.text << " is not in the scene";
+      text_.replace(at, line.text.size(), line.replacement);
+    }
+    show_.write(text_);
+    EXPECT_EQ(engine_->reload_now(), Reload::End::applied);
+  }
+
+  void end_again() {
+    EXPECT_EQ(engine_->state_hash(), again_->second) << "pass " << pass_ << ", played again after a rewind";
+    again_.reset();
+  }
+
+  std::string text_;
+  Score score_;
+  ScratchShow show_;
+  int threads_;
+  EngineLink link_;
+  Engine* engine_ = nullptr;
+  int pass_ = 0;
+  std::optional<std::pair<int, std::uint64_t>> again_;  // the pass in which the hash must be that one
+};
+
+/// Replays a take to its end; every hash in it must come out.
+inline Outcome replay(const std::string& take, int threads) {
+  log_to_stderr(std::getenv("LIMBER_GOLDEN_LOG") != nullptr);
+  EngineLink link;
+  EngineOptions options = golden_options(threads);
+  options.replay = take;
+  Engine engine(link, options);
+  const Result<void> started = engine.start();
+  EXPECT_TRUE(started.ok()) << started.error();
+  if (!started) return {};
+  engine.run();
+  const TakeVerdict verdict = engine.verdict();
+  EXPECT_FALSE(verdict.parted.has_value()) << limber::text_of(verdict);
+  EXPECT_TRUE(verdict.compared && !verdict.cut_off && verdict.damage.empty()) << limber::text_of(verdict);
+  return {engine.world().tick(), engine.state_hash()};
+}
+
+}  // namespace limber::golden

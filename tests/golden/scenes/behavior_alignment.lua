@@ -1,0 +1,15 @@
+-- The built-in group behavior alignment on sixteen balls, one of which leaves the group.
+--@ ticks 120
+sim.gravity = vec3(0, 0, 0)
+local ball = sim:add_sphere_shape("ball", 0.05)
+for i = 1, 16 do
+  local body = sim:add_body("ball" .. i)
+  body:add_part("p", ball, {
+    mass = 0.1, position = rng:uniform(vec3(-1, -1, 0), vec3(1, 1, 1)), linear_velocity = rng:direction() * 0.5,
+    angular_velocity = rng:direction() * 3,
+  })
+end
+local group = sim:add_group_behavior("alignment", "group", { bodies = "ball*", max_dist = 1.5, linear_amount = 0.2, angular_amount = 0.001 })
+sim:at(0.5, function() sim:body("ball3"):remove() end)
+sim:at(1, function() group.amount = group.amount * 2 end)
+sim:at(1.5, function() sim:body("ball5"):behavior("group").active = false end)
