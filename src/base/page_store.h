@@ -1,5 +1,6 @@
-// PageStore: copies of memory in pages of 4 KiB, whatever the size of the system's pages. Copies of the same memory share the pages that did not change between
-// them, so that thirty of them take little more than what moves. Its room is used again.
+// PageStore: copies of memory in pages of 4 KiB, whatever the size of the system's pages. Copies of the same memory
+// share the pages that did not change between them, so that thirty of them take little more than what moves. Its room
+// is used again.
 #pragma once
 
 #include <cstddef>

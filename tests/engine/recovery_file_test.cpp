@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <filesystem>
-#include <algorithm>
 #include <fstream>
 #include <iterator>
 
