@@ -252,7 +252,8 @@ bool moves_freely(const btRigidBody& body, double h) {
 
 void free_motion(const Vec3& inertia, Quat& rotation, Vec3& w, double h) {
   const Vec3 momentum = rotation * (inertia * (glm::conjugate(rotation) * w));
-  const int parts = std::clamp(static_cast<int>(std::ceil(glm::length(w) * h / kFreePart)), 1, kMostFreeParts);
+  const double wanted = std::ceil(glm::length(w) * h / kFreePart);
+  const int parts = wanted < kMostFreeParts ? std::max(static_cast<int>(wanted), 1) : kMostFreeParts;
   const double part = h / parts;
   Vec3 local = glm::conjugate(rotation) * w;
   for (int i = 0; i < parts; ++i) {

@@ -396,5 +396,17 @@ TEST(Spin, AnyNumberOfThreadsGivesTheSameMotion) {
   EXPECT_EQ(hash(3), alone);
 }
 
+// From outside any speed may come; the number of parts of a step must not overflow (a sanitizer reports it).
+TEST(FreeMotion, AnySpeedIsARotation) {
+  for (const double speed : {1e3, 1e9, 1e18, 1e30}) {
+    Quat rotation = quat_identity();
+    Vec3 w = Vec3(1, 0.5, -0.2) * speed;
+    free_motion(Vec3(1, 2, 3), rotation, w, 1.0 / 240);
+    EXPECT_TRUE(is_finite(rotation)) << speed;
+    EXPECT_NEAR(glm::length(rotation), 1, 1e-12) << speed;
+    EXPECT_TRUE(is_finite(w)) << speed;
+  }
+}
+
 }  // namespace
 }  // namespace limber::test
