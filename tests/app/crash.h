@@ -28,8 +28,9 @@ sim:every(0.2, function() sim:body("ball1").parts[1]:apply_impulse(rng:direction
 
 class CrashRound {
  public:
-  /// Ticks that values may be old that a recovery brings: what five seconds are, and a slow disk.
-  static constexpr double kSpareTicks = 420;
+  /// Greatest age of the values that a recovery restores, in ticks: a copy is made every five seconds, and the one before
+  /// is still being written.
+  static constexpr double kSpareTicks = 600;
 
   /// Killed behind about so many answers, each of which is a tick; with a `take` or without one.
   CrashRound(std::uint64_t seed, int answers, bool take)
