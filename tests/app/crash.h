@@ -28,8 +28,8 @@ sim:every(0.2, function() sim:body("ball1").parts[1]:apply_impulse(rng:direction
 
 class CrashRound {
  public:
-  /// Greatest age of the values that a recovery restores, in ticks: a copy is made every five seconds, and the one before
-  /// is still being written.
+  /// Greatest age of the values that a recovery restores, in ticks: a copy is made every five seconds, and the one
+  /// before is still being written.
   static constexpr double kSpareTicks = 600;
 
   /// Killed behind about so many answers, each of which is a tick; with a `take` or without one.

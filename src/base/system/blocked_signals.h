@@ -1,7 +1,7 @@
 // The signals that block_signals() blocks. For base/system alone.
 #pragma once
 
-#include <signal.h>
+#include <signal.h>  // NOLINT(modernize-deprecated-headers): POSIX has more than <csignal>
 
 #include "base/system/signals.h"
 

@@ -1,7 +1,7 @@
 // posix_spawn.
 #include "base/system/child_process.h"
 
-#include <signal.h>
+#include <signal.h>  // NOLINT(modernize-deprecated-headers): POSIX has more than <csignal>
 #include <spawn.h>
 #include <sys/wait.h>
 #include <unistd.h>

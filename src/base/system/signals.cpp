@@ -3,7 +3,7 @@
 
 #include <dlfcn.h>
 #include <pthread.h>
-#include <signal.h>
+#include <signal.h>  // NOLINT(modernize-deprecated-headers): POSIX has more than <csignal>
 #include <sys/time.h>
 
 #include <initializer_list>

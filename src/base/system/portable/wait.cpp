@@ -3,7 +3,7 @@
 #include "base/system/wait.h"
 
 #include <poll.h>
-#include <signal.h>
+#include <signal.h>  // NOLINT(modernize-deprecated-headers): POSIX has more than <csignal>
 #include <sys/select.h>
 
 #include <algorithm>
