@@ -28,9 +28,6 @@ golden_filter_one='Scenes/*_1:GoldenShow.*'
 
 cpu_has() { grep -qw -- "$1" /proc/cpuinfo; }
 
-# the newest clang++ of the system
-newest_clang() { { command -v clang++; compgen -c clang++- | grep -xE 'clang\+\+-[0-9]+'; } | sort -V | tail -n 1; }
-
 # hash_build LABEL COMPILER ARCHITECTURE: plays it as a row
 hash_build() {
   local label=$1 compiler=$2 architecture=$3 folder
@@ -44,15 +41,14 @@ hash_build() {
 }
 
 hash_compilers() {
-  local compiler architecture architectures="x86-64 x86-64-v2 x86-64-v3" clang
-  clang=$(newest_clang)
+  local compiler architecture architectures="x86-64 x86-64-v3" clang
+  clang=$(newest clang++)
   if cpu_has avx512f && cpu_has avx512bw && cpu_has avx512dq; then architectures+=" x86-64-v4"; else
     hash_left_out "AVX-512 (-march=x86-64-v4)" "the processor has no AVX-512"
   fi
   for compiler in g++ $clang; do
     for architecture in $architectures; do
-      # each compiler at the lowest, with AVX2 and with AVX-512
-      [ "$architecture" = x86-64-v2 ] || hash_build "$(system_name), $($compiler -dumpversion | sed "s/^/${compiler%%-*} /"), -march=$architecture" \
+      hash_build "$(system_name), $($compiler -dumpversion | sed "s/^/${compiler%%-*} /"), -march=$architecture" \
         "$compiler" "$architecture"
     done
   done

@@ -63,6 +63,7 @@ Json draw(GlApi api, const PictureScene& scene, int warm, int frames) {
   tick();
   look_at_all(arms);
   std::vector<std::shared_ptr<const Snapshot>> moments;
+  moments.reserve(kTicks);
   for (int i = 0; i < kTicks; i++) moments.push_back(tick());
   Samples own;
   double begin = 0;

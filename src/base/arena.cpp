@@ -84,7 +84,7 @@ Arena::Arena(AddressSpace& space) : space_(space) {
   static_assert(sizeof(Head) <= kHeadSize && sizeof(Chunk) == 32);
   std::byte* const begin = space.reserve(kReserve);
   if (begin == nullptr) return;
-  // what is opened later begins at a page, so the data do
+  // memory is committed from the start of a page on, so the data begin at one
   constexpr std::size_t kTable = (kReserve / kChunk * sizeof(Chunk) + kHeadSize + kChunk - 1) / kChunk * kChunk;
   std::byte* const data = next_page(begin + kTable, space.page());
   if (!space.open(begin, static_cast<std::size_t>(data - begin))) {
@@ -150,7 +150,7 @@ std::uint32_t Arena::take_chunks(std::uint32_t count) {
   const std::size_t most = (kReserve - static_cast<std::size_t>(data_ - reinterpret_cast<std::byte*>(head_))) / kChunk;
   if (end > most) return kNone;
   if (end > head.ready) {
-    // up to the end of a large page: it is given whole or not at all, and what is opened next begins at a page
+    // commits up to the end of a large page, which the system provides as a whole; the next commit begins there
     const auto whole = static_cast<std::size_t>(next_page(data_of(end), kLargePage) - data_);
     const auto ready = static_cast<std::uint32_t>(std::min(most, (whole + kChunk - 1) / kChunk));
     if (!space_.open(data_of(head.ready), std::size_t{ready - head.ready} * kChunk)) return kNone;

@@ -1,7 +1,7 @@
 # Writes the answers of build_info.h; the file is touched only when an answer changed, so that nothing rebuilds for it.
 # The commit is git's answer for a checkout, and that of .git_archival.txt in an archive that `git archive` made.
 set(commit unknown)
-# an archive that is unpacked within somebody's checkout is not a part of it: then the prefix is not empty
+# an archive may be unpacked inside another repository: then the prefix is not empty, and git's answer is not used
 execute_process(COMMAND git -C ${SOURCE} rev-parse --show-prefix
                 OUTPUT_VARIABLE prefix RESULT_VARIABLE failed OUTPUT_STRIP_TRAILING_WHITESPACE ERROR_QUIET)
 if(NOT failed AND prefix STREQUAL "")

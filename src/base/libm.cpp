@@ -4,12 +4,10 @@
 // libraries therefore call these definitions too, and the results of math.sin in a script or of an angle that Bullet
 // computes depend on neither the version of the C library nor on the processor. is_libm_replaced() checks this.
 #include <cmath>
-#include <initializer_list>
 
 #include "base/fixed_math.h"
 #include "base/system/process.h"
 
-// GCC knows what these functions compute, and may replace the call in a definition by a call of the function itself.
 #define LIMBER_LIBM_UNARY(name)                                                \
   extern "C" double name(double x) noexcept { return limber::fixed::name(x); } \
   extern "C" float name##f(float x) noexcept { return limber::fixed::name##f(x); }

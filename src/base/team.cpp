@@ -65,7 +65,7 @@ void Team::share(int pieces, Call call, void* of) {
 }
 
 void Team::help(int member) {
-#include "base/fixed_math.h"
+  fixed::reset_arithmetic();
   system::name_this_thread("limber-team");
   std::uint32_t seen = 0;
   while (!ends_) {

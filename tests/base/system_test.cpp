@@ -106,6 +106,7 @@ TEST(Wait, LastsForItsLimit) {
 TEST(Wait, MoreThanAFewDescriptors) {
   std::vector<Wake> wakes(40);
   std::vector<Waiting> list;
+  list.reserve(wakes.size());
   for (const Wake& wake : wakes) list.push_back({.fd = wake.fd()});
   wakes[37].notify();
   EXPECT_TRUE(wait_ready(list, kPatience));

@@ -3,7 +3,13 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
+#include <atomic>
+#include <cfenv>
+#include <thread>
 #include <vector>
+
+#include "base/fixed_math.h"
 
 namespace limber {
 namespace {
@@ -69,6 +75,22 @@ TEST(Team, MembersWorkSideBySide) {
     });
     EXPECT_EQ(here, kMembers);
   }
+}
+
+// A library may change the rounding of a thread, which the threads that it starts inherit.
+TEST(Team, MembersRoundToNearest) {
+  constexpr int kMembers = 3;
+  std::fesetround(FE_UPWARD);
+  Team team(kMembers);
+  fixed::reset_arithmetic();
+  std::atomic<int> here{0};
+  std::array<bool, kMembers> exact{};
+  team.run(kMembers, [&](int piece, int) {
+    here++;
+    while (here < kMembers) std::this_thread::yield();
+    exact.at(static_cast<std::size_t>(piece)) = fixed::is_arithmetic_exact();
+  });
+  EXPECT_EQ(exact, (std::array<bool, kMembers>{true, true, true}));
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-// ChildProcess: another program that reads what is written to it. [one thread]
+// ChildProcess: a program that this one starts and writes to. [one thread]
 #pragma once
 
 #include <string>

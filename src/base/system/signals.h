@@ -27,8 +27,8 @@ void call_thread(std::uint64_t thread);
 
 /// Calls the handler at a signal; system calls that wait end early. [main]
 void handle_signal(int signal, SignalHandler handler);
-/// The same, at any instruction and with system calls that go on: in spite of a sanitizer, which would put the handler
-/// off until the next call that it knows. [any]
+/// The same, but the handler runs at any instruction, and system calls continue afterwards. Bypasses sanitizers, which
+/// delay handlers until the next intercepted call. [any]
 void handle_signal_at_once(int signal, SignalHandler handler);
 /// Keeps a signal out, except in wait_ready_or_signal(). [the thread]
 void block_signal(int signal);

@@ -18,7 +18,7 @@ struct Endpoint {
   std::uint32_t ip = 0;
   std::uint16_t port = 0;
 
-  auto operator<=>(const Endpoint&) const = default;
+  auto operator<=>(const Endpoint&) const = default;  // NOLINT(modernize-use-nullptr): a false alarm of clang-tidy 14
 };
 
 /// "127.0.0.1:9003". [any]

@@ -24,7 +24,7 @@ class UdpSocket : public Descriptor {
 /// A non-blocking UDP socket bound to `at` (port 0: the system chooses). The error says why not, nothing more.
 Result<UdpSocket> open_udp(const Endpoint& at);
 
-/// Asks for a receive buffer of so many bytes; returns the number that the system grants.
+/// Requests a receive buffer of this size; returns the size that the system grants, in bytes.
 int set_receive_buffer(int fd, int bytes);
 void set_send_buffer(int fd, int bytes);
 void allow_broadcast(int fd);

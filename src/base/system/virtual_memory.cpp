@@ -12,9 +12,9 @@ std::size_t page_size() {
 }
 
 std::byte* reserve_memory(std::size_t bytes, std::uintptr_t wish) {
-  // NOLINTNEXTLINE(performance-no-int-to-ptr): an address that nothing has yet
-  void* const got =
-      mmap(reinterpret_cast<void*>(wish), bytes, PROT_NONE, MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);
+  // NOLINTNEXTLINE(performance-no-int-to-ptr): no object has this address yet
+  auto* const place = reinterpret_cast<void*>(wish);
+  void* const got = mmap(place, bytes, PROT_NONE, MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);
   return got == MAP_FAILED ? nullptr : static_cast<std::byte*>(got);
 }
 

@@ -34,10 +34,10 @@ std::string find_executable() {
 }
 
 // before main(): the program has not left its folder yet
-const std::string found = find_executable();
+const std::string kFound = find_executable();
 
 }  // namespace
 
-std::string executable_path() { return found; }
+std::string executable_path() { return kFound; }
 
 }  // namespace limber::system

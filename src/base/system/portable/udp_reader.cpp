@@ -1,4 +1,4 @@
-// recvfrom. The system neither counts what it drops nor names the largest buffer.
+// recvfrom. POSIX offers neither a count of dropped datagrams nor the largest buffer size.
 #include <array>
 #include <vector>
 
