@@ -1,6 +1,8 @@
 // Options of the window, of stills and films.
 #include "app/picture_options.h"
 
+#include <cstdlib>
+
 #include <fmt/format.h>
 #include <CLI/CLI.hpp>
 
@@ -13,14 +15,12 @@ namespace {
 
 constexpr int kLargest = 16384;
 
-CLI::Validator gl_choice() {
-  return CLI::Validator(
-      [](std::string& text) {
-        return text == "auto" || gl_apis(text).size() == 1
-                   ? std::string()
-                   : fmt::format("'{}' must be auto, core, es or 3.1 (LIMBER_GL sets it, too)", text);
-      },
-      "", "gl");
+constexpr const char* kGlVariable = "LIMBER_GL";
+
+// the error of a value of --gl; empty: it is valid
+std::string gl_choice_fault(const std::string& text) {
+  if (text == "auto" || gl_apis(text).size() == 1) return {};
+  return fmt::format("'{}' must be auto, core, es or 3.1 ({} sets it, too)", text, kGlVariable);
 }
 
 }  // namespace
@@ -51,13 +51,21 @@ void add_picture_options(CLI::App& play, PictureOptions& o) {
 }
 
 void add_gl_option(CLI::App& command, std::string& choice) {
-  command
-      .add_option("--gl", choice,
-                  "draw with OpenGL 3.3 (core), OpenGL ES 3.0 (es) or OpenGL 3.1; default auto: the first of them that "
-                  "the driver has")
-      ->type_name("auto|core|es|3.1")
-      ->check(gl_choice())
-      ->envname("LIMBER_GL");
+  const CLI::Option* const option =
+      command
+          .add_option(
+              "--gl", choice,
+              "draw with OpenGL 3.3 (core), OpenGL ES 3.0 (es) or OpenGL 3.1; default: what LIMBER_GL says, else "
+              "auto, the first of them that the driver has")
+          ->type_name("auto|core|es|3.1")
+          ->check(CLI::Validator([](std::string& text) { return gl_choice_fault(text); }, "", "gl"));
+  // not by CLI11's envname(): its newer versions ignore a variable whose value is invalid
+  command.parse_complete_callback([option, &choice] {
+    const char* const variable = std::getenv(kGlVariable);
+    if (option->count() > 0 || variable == nullptr || *variable == 0) return;
+    choice = variable;
+    if (const std::string fault = gl_choice_fault(choice); !fault.empty()) throw CLI::ValidationError("--gl", fault);
+  });
 }
 
 Result<PictureSize> picture_size(const PictureOptions& options) {

@@ -186,6 +186,10 @@ Result<std::unique_ptr<Window>> Window::open(const std::string& title, int width
                                              std::span<const GlApi> apis) {
   if (!has_display())
     return Error{"no display: DISPLAY and WAYLAND_DISPLAY are not set; a desktop session or xvfb-run sets one"};
+#if defined(GLFW_PLATFORM)
+  // GLFW 3.4 tries Wayland first, also where no session offers it
+  if (!is_set("WAYLAND_DISPLAY")) glfwInitHint(GLFW_PLATFORM, GLFW_PLATFORM_X11);
+#endif
   if (glfwInit() != GLFW_TRUE) {
     const std::string why = glfw_fault();
     const char* const fix = is_set("DISPLAY") || why.starts_with("Wayland")

@@ -9,8 +9,8 @@ namespace limber {
 namespace {
 
 // a part of the C library that nothing here is linked with
-constexpr const char* kLibrary = "libthread_db.so.1";
-constexpr const char* kFunction = "td_ta_new";
+constexpr const char* kLibrary = "libnss_compat.so.2";
+constexpr const char* kFunction = "_nss_compat_getpwnam_r";
 
 TEST(FindSymbol, FindsFunctionsOfTheProgramsLibraries) {
   EXPECT_NE(system::find_symbol("malloc"), nullptr);

@@ -16,6 +16,10 @@ struct HostileCase {
 
 std::ostream& operator<<(std::ostream& out, const HostileCase& hostile) { return out << hostile.name; }
 
+// some releases of LuaJIT call no message handler when the stack of compiled code overflows: then the place is the line
+// of the function that was called
+constexpr int kAnyLine = 0;
+
 constexpr HostileCase kHostile[] = {
     {"Errs", "local x = nil + 1", "attempt to perform arithmetic on a nil value"},
     {"ThrowsATable", "error({})", "an error that is no text but a table"},
@@ -25,7 +29,7 @@ constexpr HostileCase kHostile[] = {
     {"CatchesItsStop", "pcall(function() while true do end end) while true do pcall(error) end",
      " ms of computing; look for a loop without an end"},
     {"EatsMemory", "local t = {} while true do t[#t + 1] = ('x'):rep(1000) .. #t end", "stopped"},
-    {"RecursesForEver", "local function f() return 1 + f() end f()", "stack overflow"},
+    {"RecursesForEver", "local function f() return 1 + f() end f()", "stack overflow", kAnyLine},
     {"WritesOthers",
      "local other = sim:body('healthy') other.position = vec3(9, 9, 9) other.root.mass = 50 "
      "other.root:apply_force(vec3(100, 0, 0)) other.root:apply_impulse(vec3(5, 0, 0)) "
@@ -109,7 +113,10 @@ TEST_P(HostileBehaviors, AreSuspendedAloneAndLeaveNoTrace) {
     if (acts) {
       EXPECT_NE(bad.error().find(hostile.said), std::string::npos) << bad.error();
       EXPECT_EQ(bad.fault().file, "behaviors_lua/test.lua");
-      EXPECT_EQ(bad.fault().line, hostile.line);
+      EXPECT_GT(bad.fault().line, 0);
+      if (hostile.line != kAnyLine) {
+        EXPECT_EQ(bad.fault().line, hostile.line);
+      }
       EXPECT_TRUE(bad.active());
       EXPECT_EQ(stage.host.resets, 0);
     }
