@@ -109,7 +109,7 @@ int doctor_command(const DoctorCommand& command) {
 
   const bool exact = fixed::is_arithmetic_exact() && fixed::is_libm_replaced();
   finding(exact ? "ok" : "no", "arithmetic",
-          exact ? "as on every other machine: a scene, a seed and its commands give the same hash"
+          exact ? "as on every machine of this architecture: a scene, a seed and its commands give the same hash"
                 : "hashes and takes of other machines do not match: the program was compiled with -ffast-math or "
                   "-ffp-contract, or without exporting its mathematical functions");
 
