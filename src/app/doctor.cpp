@@ -69,14 +69,6 @@ bool check_ports(const std::vector<ListenAddress>& osc_in, const std::optional<L
   return open.ok() && panel.ok();
 }
 
-bool program_in_path(const std::string& name) {
-  const char* const path = std::getenv("PATH");
-  for (const std::string_view folder : split(path == nullptr ? "" : path, ':')) {
-    if (system::is_executable(fmt::format("{}/{}", folder, name))) return true;
-  }
-  return false;
-}
-
 void check_drawing(const std::string& gl) {
   const auto context = Offscreen::make(gl);
   if (context) {
@@ -89,7 +81,7 @@ void check_drawing(const std::string& gl) {
   const FontFiles fonts = find_fonts();
   for (const std::string& line : fonts.said) finding("mind", "fonts", line);
   if (fonts.said.empty()) finding("ok", "fonts", "Inter and JetBrains Mono, for the panel");
-  const bool video = program_in_path("ffmpeg");
+  const bool video = !find_in_path("ffmpeg").empty();
   finding(video ? "ok" : "mind", "ffmpeg",
           video ? "there, for --render film.mp4" : "not there: --render makes stills only; apt-get install ffmpeg");
 }

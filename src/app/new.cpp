@@ -114,7 +114,7 @@ int new_show(const std::string& folder) {
     if (path == "luarc.json") path = ".luarc.json";
     if (const int code = write_and_say(root / path, filled(file.text, title)); code != kFine) return code;
   }
-  fmt::print("\nNext:  cd {} && limber play scripts/main.lua\n", printable(folder));
+  fmt::print("\nNext:  cd {} && {} play scripts/main.lua\n", shell_word(folder), program_command());
   return kFine;
 }
 
@@ -175,7 +175,7 @@ int new_file(const NewCommand& command) {
   const fs::path path = show / (scene ? "scripts" : "behaviors_lua") / (name + ".lua");
   if (const int code = write_and_say(path, filled(text->text, name)); code != kFine) return code;
   if (scene) {
-    fmt::print("\nNext:  limber play {}\n", printable(path.string()));
+    fmt::print("\nNext:  {} play {}\n", program_command(), shell_word(path.string()));
   } else {
     fmt::print("\nNext:  in a scene, body:add_behavior(\"{0}\", \"my_{0}\")\n", name);
   }

@@ -9,6 +9,8 @@
 
 #include "base/build_info.h"
 #include "base/system/executable_path.h"
+#include "base/system/file.h"
+#include "base/text.h"
 
 namespace limber {
 
@@ -28,6 +30,31 @@ std::string data_dir() {
     if (fs::is_directory(place / "scripts", fault) && fs::is_directory(place / "urdf", fault)) return place.string();
   }
   return {};
+}
+
+std::string find_in_path(std::string_view name) {
+  const char* const path = std::getenv("PATH");
+  for (const std::string_view folder : split(path == nullptr ? "" : path, ':')) {
+    std::string file = fmt::format("{}/{}", folder.empty() ? "." : folder, name);
+    if (system::is_executable(file)) return file;
+  }
+  return {};
+}
+
+std::string shell_word(std::string_view text) {
+  const std::string word = printable(text);
+  constexpr std::string_view kPlain = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-./+,:@%";
+  if (!word.empty() && word.find_first_not_of(kPlain) == std::string::npos) return word;
+  std::string quoted = "'";
+  for (const char c : word) quoted += c == '\'' ? "'\\''" : std::string(1, c);
+  return quoted + "'";
+}
+
+std::string program_command() {
+  const std::string program = system::executable_path();
+  std::error_code fault;
+  if (program.empty() || fs::equivalent(find_in_path("limber"), program, fault)) return "limber";
+  return shell_word(program);
 }
 
 std::string shader_dir() {

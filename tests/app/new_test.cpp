@@ -5,6 +5,7 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
+#include "app/paths.h"
 #include "app/program.h"
 
 namespace limber::app_test {
@@ -13,6 +14,13 @@ namespace {
 namespace fs = std::filesystem;
 
 Ran play(const fs::path& scene) { return run({scene.string(), "--fast", "--ticks", "60", "--strict", "--hash"}, "/"); }
+
+TEST(New, ShellWordsSurviveAShell) {
+  EXPECT_EQ(shell_word("/usr/bin/limber"), "/usr/bin/limber");
+  EXPECT_EQ(shell_word("my show"), "'my show'");
+  EXPECT_EQ(shell_word("it's $HOME"), "'it'\\''s $HOME'");
+  EXPECT_EQ(shell_word(""), "''");
+}
 
 TEST(New, AShowIsWholeAndPlays) {
   const Folder folder;
@@ -25,7 +33,7 @@ TEST(New, AShowIsWholeAndPlays) {
     EXPECT_EQ(content(show / file).find("{{"), std::string::npos) << file << " has a gap";
     EXPECT_NE(made.out.find(std::string("my show/") + file + "\n"), std::string::npos) << made.out;
   }
-  EXPECT_TRUE(made.out.ends_with("\nNext:  cd my show && limber play scripts/main.lua\n")) << made.out;
+  EXPECT_TRUE(made.out.ends_with("\nNext:  cd 'my show' && " LIMBER_PROGRAM " play scripts/main.lua\n")) << made.out;
   EXPECT_TRUE(content(show / "README.md").starts_with("# my show\n"));
   const Ran played = play(show / "scripts/main.lua");
   EXPECT_EQ(played.code, 0) << played.err;
@@ -34,6 +42,24 @@ TEST(New, AShowIsWholeAndPlays) {
   EXPECT_EQ(inspected.code, 0) << inspected.err;
   const auto problems = nlohmann::json::parse(inspected.out)["problems"];
   EXPECT_EQ(problems.size(), 1U) << "only the note that a root without mass stands fast: " << problems;
+}
+
+TEST(New, WhatItPrintsNextRunsInAShell) {
+  const Folder folder;
+  const std::string program = install_copy(folder);
+  for (const auto& [path, command] :
+       {std::pair(std::string("/usr/bin:/bin"), program),
+        std::pair(fs::path(program).parent_path().string() + ":/usr/bin:/bin", std::string("limber"))}) {
+    const std::string name = command == "limber" ? "it's here" : "elsewhere";
+    const Ran made = Running({"env", "PATH=" + path, program, "new", "show", name}, folder.path()).finish();
+    EXPECT_NE(made.out.find(" && " + command + " play scripts/main.lua\n"), std::string::npos) << made.out;
+    const std::string line = made.out.substr(made.out.find("Next:  ") + 7);
+    const Ran played =
+        Running({"env", "PATH=" + path, "sh", "-c", line.substr(0, line.size() - 1) + " --fast --ticks 1 --hash"},
+                folder.path())
+            .finish();
+    EXPECT_NE(played.out.find(" tick 1\n"), std::string::npos) << played.out << played.err;
+  }
 }
 
 TEST(New, AShowTellsEditorsWhereTheDefinitionsAre) {
@@ -68,7 +94,7 @@ TEST(New, ASceneGoesIntoTheShowAround) {
   const Ran made = run({"new", "scene", "dance.lua"}, folder.path() + "/scripts/lib");
   EXPECT_EQ(made.code, 0) << made.err;
   const fs::path scene = fs::path(folder.path()) / "scripts/dance.lua";
-  EXPECT_EQ(made.out, scene.string() + "\n\nNext:  limber play " + scene.string() + "\n");
+  EXPECT_EQ(made.out, scene.string() + "\n\nNext:  " LIMBER_PROGRAM " play " + scene.string() + "\n");
   EXPECT_TRUE(content(scene).starts_with("-- dance: "));
   const Ran played = play(scene);
   EXPECT_EQ(played.code, 0) << played.err;
