@@ -96,6 +96,19 @@ std::vector<std::string_view> split_options(std::string_view text) {
   return pieces;
 }
 
+// what speaks against listening at this address; null: nothing
+const char* unsupported(std::string_view address) {
+  if (address.find(':') != std::string_view::npos || address.starts_with('[')) {
+    return "IPv6 is not supported; write an IPv4 address, such as 127.0.0.1:9003 or 0.0.0.0:9003";
+  }
+  const std::optional<std::uint16_t> first = parse_port(address.substr(0, address.find('.')));
+  if (first && *first >= 224 && *first <= 239) {
+    return "this is a multicast group, which can't be joined; have the sender address this machine, and listen at "
+           "0.0.0.0:9003";
+  }
+  return nullptr;
+}
+
 }  // namespace
 
 bool Cidr::holds(std::uint32_t address) const {
@@ -117,6 +130,9 @@ Result<std::vector<ListenAddress>> parse_listen(std::string_view option, std::st
     const std::size_t colon = piece.rfind(':');
     const std::string_view port_text = colon == std::string_view::npos ? piece : piece.substr(colon + 1);
     if (colon != std::string_view::npos) address.address = piece.substr(0, colon);
+    if (const char* const why = unsupported(address.address)) {
+      return Error{fmt::format("{} '{}': {}", option, printable(text), why)};
+    }
     const std::optional<std::uint16_t> port = parse_port(port_text);
     if (!port || address.address.empty()) {
       return Error{

@@ -23,6 +23,22 @@ TEST(OscIn, RefusedWithCure) {
             "--osc-in 'nine': no port in 'nine'; write --osc-in [ADDR:]PORT, such as 9003 or 0.0.0.0:9003, or off");
 }
 
+TEST(OscIn, MulticastAndIPv6AreNamed) {
+  for (const char* text : {"224.0.0.1:9003", "239.255.0.1:9003", "9003,239.1.2.3:9004"}) {
+    const auto r = parse_osc_in(text);
+    ASSERT_FALSE(r.ok()) << text;
+    EXPECT_NE(r.error().find("is a multicast group"), std::string::npos) << r.error();
+  }
+  for (const char* text : {"[::1]:9003", "::1", "fe80::1:9003", "::"}) {
+    const auto r = parse_osc_in(text);
+    ASSERT_FALSE(r.ok()) << text;
+    EXPECT_NE(r.error().find("IPv6 is not supported"), std::string::npos) << r.error();
+  }
+  EXPECT_TRUE(parse_osc_in("223.255.255.255:9003").ok());
+  EXPECT_TRUE(parse_osc_in("240.0.0.1:9003").ok()) << "the system says what is wrong with it";
+  EXPECT_TRUE(parse_osc_in("localhost:9003").ok());
+}
+
 TEST(OscOut, Values) {
   EXPECT_EQ(*parse_osc_out("10.0.0.5:9005"), std::vector<StreamTarget>{StreamTarget{.host = "10.0.0.5"}});
   const auto all = parse_osc_out("pi.local:7000,rate=30.5,bundle=8192,streams=pos+relpos,bodies=arm{1,2}*,errors=on");
