@@ -194,7 +194,7 @@ std::string_view nearest_name(std::string_view written, std::span<const std::str
 }
 
 std::string name_hint(std::string_view written, std::span<const std::string_view> names) {
-  if (names.empty()) return "; there is none";
+  if (names.empty()) return "; none exist";
   const std::string_view near = nearest_name(written, names);
   if (!near.empty()) return fmt::format("; did you mean '{}'?", near);
   const std::size_t shown = std::min<std::size_t>(names.size(), 8);

@@ -24,7 +24,7 @@ bool is_pattern(std::string_view name);
 /// The nearest of `names` to what was written (edit distance at most a third of its length, neighbours
 /// that changed places being one edit, ignoring case), or empty.
 std::string_view nearest_name(std::string_view written, std::span<const std::string_view> names);
-/// "; did you mean 'x'?" or, without a near one, "; there are: a, b, c …" (at most eight), or "; there is none".
+/// "; did you mean 'x'?" or, without a near one, "; there are: a, b, c …" (at most eight), or "; none exist".
 std::string name_hint(std::string_view written, std::span<const std::string_view> names);
 std::string name_hint(std::string_view written, const std::vector<std::string>& names);
 

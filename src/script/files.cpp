@@ -30,6 +30,11 @@ fs::path absolute_of(const fs::path& path) {
   return (fault ? path : full).lexically_normal();
 }
 
+// behind the others, unless it is one of them
+void add_new(std::vector<fs::path>& places, const fs::path& place) {
+  if (std::find(places.begin(), places.end(), place) == places.end()) places.push_back(place);
+}
+
 // from a folder to the root
 std::vector<fs::path> upwards(fs::path folder) {
   std::vector<fs::path> list;
@@ -102,8 +107,8 @@ Result<std::string> ScriptFiles::find(std::string_view name, std::vector<std::st
   if (name.empty()) return Error{"a file's name must not be empty"};
   std::vector<fs::path> places = {absolute_of(fs::path(name))};
   if (!fs::path(name).is_absolute()) {
-    for (const fs::path& folder : upwards(scene_folder_)) places.push_back((folder / name).lexically_normal());
-    if (!data_dir_.empty()) places.push_back((fs::path(data_dir_) / name).lexically_normal());
+    for (const fs::path& folder : upwards(scene_folder_)) add_new(places, absolute_of(folder / name));
+    if (!data_dir_.empty()) add_new(places, absolute_of(fs::path(data_dir_) / name));
   }
   std::string looked;
   for (const fs::path& place : places) {
@@ -117,17 +122,16 @@ Result<std::string> ScriptFiles::find(std::string_view name, std::vector<std::st
 Result<std::string> ScriptFiles::find_lib(std::string_view name, std::vector<std::string>* passed) const {
   std::vector<fs::path> folders;
   for (const std::string& root : {show_, data_dir_}) {
-    if (!root.empty()) folders.push_back(fs::path(root) / "scripts" / "lib");
+    if (!root.empty()) add_new(folders, absolute_of(fs::path(root) / "scripts" / "lib"));
   }
   return find_module(name, folders, passed);
 }
 
 Result<std::string> ScriptFiles::find_behavior_lib(std::string_view name, const std::string& behavior,
                                                    std::vector<std::string>* passed) const {
-  std::vector<fs::path> folders = {fs::path(behavior).parent_path() / "lib"};
+  std::vector<fs::path> folders = {absolute_of(fs::path(behavior).parent_path() / "lib")};
   for (const std::string& root : {show_, data_dir_}) {
-    const fs::path folder = fs::path(root) / "behaviors_lua" / "lib";
-    if (!root.empty() && std::find(folders.begin(), folders.end(), folder) == folders.end()) folders.push_back(folder);
+    if (!root.empty()) add_new(folders, absolute_of(fs::path(root) / "behaviors_lua" / "lib"));
   }
   return find_module(name, folders, passed);
 }

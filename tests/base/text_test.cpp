@@ -141,7 +141,7 @@ TEST(Text, NearNamesAreWithinAThird) {
 
 TEST(Text, HintsSayWhatThereIs) {
   const std::vector<std::string> none;
-  EXPECT_EQ(name_hint("x", none), "; there is none");
+  EXPECT_EQ(name_hint("x", none), "; none exist");
   const std::vector<std::string> arms = {"arm1", "arm2"};
   EXPECT_EQ(name_hint("amr1", {"arm1"}), "; did you mean 'arm1'?");  // a swap is one edit, and a third of 4 is 1
   EXPECT_EQ(name_hint("ar1", arms), "; did you mean 'arm1'?");

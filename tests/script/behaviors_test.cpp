@@ -75,13 +75,13 @@ TEST(LuaBehaviors, ErrorsNameWhatExists) {
             "scripts/scene.lua:7: behavior 'arm/f' has no property 'ampp'; did you mean 'amp'?");
   EXPECT_EQ(error("local b = arm:add_behavior('force', 'f') b.time = 2"),
             "scripts/scene.lua:7: behavior 'arm/f': 'time' is a readout: it can be read, not set");
-  EXPECT_EQ(error("arm:behavior('wind')"), "scripts/scene.lua:7: body 'arm' has no behavior 'wind'; there is none");
+  EXPECT_EQ(error("arm:behavior('wind')"), "scripts/scene.lua:7: body 'arm' has no behavior 'wind'; none exist");
   EXPECT_EQ(error("arm:add_behavior('cohesion', 'f')"),
             "scripts/scene.lua:7: 'cohesion' acts on several bodies: attach it with sim:add_group_behavior");
   EXPECT_EQ(error("sim:add_group_behavior('force', 'f')"),
             "scripts/scene.lua:7: 'force' acts on one body: attach it with body:add_behavior");
   EXPECT_EQ(error("sim:group_behavior('flock')"),
-            "scripts/scene.lua:7: sim has no group behavior 'flock'; there is none");
+            "scripts/scene.lua:7: sim has no group behavior 'flock'; none exist");
   EXPECT_EQ(error("local twin = arm:copy('twin') arm:add_behavior('force', 'f', { parts = twin:part(1) })"),
             "scripts/scene.lua:7: add_behavior: parts: part 'twin/base' does not belong to body 'arm'");
   EXPECT_EQ(error("arm.add_behavior('force', 'f')"),

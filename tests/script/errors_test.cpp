@@ -1,6 +1,9 @@
 // Errors: file:line, what, the source line, the way there; of runs, callbacks, syntax, files that are not there.
 #include <gtest/gtest.h>
 
+#include <set>
+#include <sstream>
+
 #include "stage.h"
 
 namespace limber {
@@ -108,6 +111,9 @@ TEST(Errors, DeepRecursionIsAnError) {
 
 TEST(Errors, FaultsInsideThePreludeStandAtTheScript) {
   EXPECT_EQ(error_of("math.clamp(nil, 1, 2)"), "scripts/scene.lua:1: math.clamp takes three numbers: what, from, to");
+  EXPECT_EQ(
+      error_of("math.randomseed(3)"),
+      "scripts/scene.lua:1: math.randomseed is not available; sim.seed (or --seed) seeds every generator of a scene");
   EXPECT_EQ(error_of("table.sort({ 1, {} })"), "scripts/scene.lua:1: attempt to compare table with number");
 }
 
@@ -117,6 +123,11 @@ TEST(Errors, AMissingFileSaysWhereItLooked) {
   EXPECT_EQ(first_line(fault), "scripts/scene.lua:1: there is no file 'urdf/nobody.urdf'; looked for");
   EXPECT_NE(fault.find("\n  " + (stage.folder / "scripts/urdf/nobody.urdf").string()), std::string::npos) << fault;
   EXPECT_NE(fault.find("\n  " + (stage.folder / "urdf/nobody.urdf").string()), std::string::npos) << fault;
+  std::set<std::string> places;
+  std::istringstream lines(fault.substr(0, fault.find("\n  1 |")));
+  std::string line;
+  while (std::getline(lines, line)) EXPECT_TRUE(places.insert(line).second) << "twice: " << line;
+  EXPECT_GT(places.size(), 2u);
   Stage other;
   const Result<void> ran = other.scene.run((other.folder / "scripts/none.lua").string());
   ASSERT_FALSE(ran.ok());

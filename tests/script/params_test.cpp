@@ -133,9 +133,11 @@ TEST(Params, Mistakes) {
       {"params { { 'a', 0 / 0 } }", nullptr},
       {"params { { 'a', 1 } } params { { 'b', 1 } }", "params is called once, with all parameters of the scene"},
       {"params { { 'wind', 1 } } print(params.win)", "params has no 'win'; did you mean 'wind'?"},
-      {"print(params.wind)", "params has no 'wind'; there is none"},
+      {"print(params.wind)", "params has no 'wind'; none exist"},
       {"params { { 'wind', 1 } } params.wind = 2",
        "setting params.wind acts on the running scene; at the top level use sim:on_start(function() … end)"},
+      {"params { rate = 1 }", "params: 'rate' is not an entry of the list; write { \"rate\", … }"},
+      {"params { { 'a', 1 }, [3] = { 'b', 1 } }", "params: '3' is not an entry of the list; write { \"3\", … }"},
       {"params(5)", "params takes a list of { \"name\", default, … }, not 5"},
   };
   for (const auto& [text, expected] : cases) {

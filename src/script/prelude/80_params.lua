@@ -97,6 +97,12 @@ end
 -- the rows of a list of declarations, gathered behind the door: the scene's, or a behaviour's
 function P.gather_rows(list)
   if type(list) ~= "table" then fail("params takes a list of { \"name\", default, … }, not %s", describe(list)) end
+  local others = {}
+  for key in pairs(list) do
+    if type(key) ~= "number" or key % 1 ~= 0 or key < 1 or key > #list then others[#others + 1] = tostring(key) end
+  end
+  table.sort(others)
+  if others[1] then fail("params: '%s' is not an entry of the list; write { \"%s\", … }", others[1], others[1]) end
   api.param_begin(ctx)
   for i, spec in ipairs(list) do declare_one(spec, i) end
 end

@@ -43,6 +43,9 @@ local function explain(message)
   if find(message, "^attempt to call method '.-' %(a %a+ value%)") and not find(message, "nil value") then
     return message .. "; members take a dot, only methods a colon"
   end
+  if message == "attempt to call field 'randomseed' (a nil value)" then
+    return "math.randomseed is not available; sim.seed (or --seed) seeds every generator of a scene"
+  end
   if message == "attempt to write to constant location" then
     return "this member never changes; of a vec3 or quat set the whole value"
   end
