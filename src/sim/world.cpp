@@ -118,6 +118,7 @@ void World::clear() {
 
 void World::restart_time(std::uint64_t tick, double time) {
   tick_ = tick;
+  timestep_since_ = 0;
   store_.tell(id_, *world_rows().time)[0] = time;
   store_.tell(id_, *world_rows().tick)[0] = static_cast<double>(tick);
   for (const Row* row : {world_rows().fallbacks, world_rows().islands_direct, world_rows().islands_iterative}) {
@@ -261,7 +262,7 @@ void World::step() {
   const double after = system::clock_seconds();
   contacts_.end_tick();
   tick_++;
-  store_.tell(id_, *world_rows().time)[0] += timestep();
+  tell_time();
   store_.tell(id_, *world_rows().tick)[0] = static_cast<double>(tick_);
   tell_solved(solved);
   store_.tell(id_, *world_rows().sleeping)[0] = bullet_->sleep().sleeping();
@@ -269,6 +270,16 @@ void World::step() {
   if (std::exchange(healed_, false)) settle_healed();
   camera_moves_.step();
   times_ = {start - begin, before - start, after - before, system::clock_seconds() - after};
+}
+
+// A sum of timesteps would drift from their product.
+void World::tell_time() {
+  if (timestep() != timestep_since_) {
+    timestep_since_ = timestep();
+    time_then_ = time();
+    tick_then_ = tick_ - 1;
+  }
+  store_.tell(id_, *world_rows().time)[0] = time_then_ + static_cast<double>(tick_ - tick_then_) * timestep_since_;
 }
 
 bool World::awake_bodies_known() const {

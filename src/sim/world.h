@@ -157,6 +157,7 @@ class World {
   void tell_solved(const DirectCounts& before);
   void settle_gears();
   void report_slips();
+  void tell_time();
   void tell_bodies();
   void report_overlap(const Body& body, const Part& a, const Part& b, double depth);
   void log_overlaps();
@@ -192,6 +193,8 @@ class World {
   MotionHash motion_hash_{*this};
   TickTimes times_;
   std::uint64_t tick_ = 0;
+  double timestep_since_ = 0, time_then_ = 0;  // the timestep since a tick, and the time at it
+  std::uint64_t tick_then_ = 0;
   std::uint64_t health_events_ = 0;
   bool reset_asked_ = false;
   bool panic_asked_ = false;

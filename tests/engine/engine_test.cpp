@@ -179,7 +179,7 @@ osc:on("/ask", function() osc:reply("/told", sim.tick) end)
   EXPECT_EQ(show.outbox(), (Lines{})) << "pausing takes steps back that were not taken yet";
   show.send("/transport/play");
   show.ticks(1);
-  EXPECT_EQ(show.outbox(), (Lines{"/step 5", "/transport/state 0 6 0.6 1"}));
+  EXPECT_EQ(show.outbox(), (Lines{"/step 5", "/transport/state 0 6 0.6000000000000001 1"}));
   EXPECT_FALSE(show.link.snapshots.read()->paused);
 }
 

@@ -142,6 +142,19 @@ TEST(WorldTest, ClearingLeavesAnEmptyWorldThatCanBeFilledAgain) {
   }
 }
 
+TEST(WorldTest, TimeIsTicksTimesTimestep) {
+  Stage s;
+  s.ticks(1000);
+  EXPECT_EQ(s.world.time(), 1000 * s.world.timestep());
+  const double before = s.world.time();
+  s.set(s.world.id(), "timestep", {0.01});
+  s.ticks(700);
+  EXPECT_EQ(s.world.time(), before + 700 * s.world.timestep());
+  s.world.restart_time(5, 2);
+  s.ticks(300);
+  EXPECT_EQ(s.world.time(), 2 + 300 * s.world.timestep());
+}
+
 TEST(WorldTest, ResetIsAskedForAndTakenOnce) {
   Stage s;
   EXPECT_FALSE(s.world.take_reset_request());
