@@ -11,6 +11,9 @@ namespace {
 
 namespace fs = std::filesystem;
 
+/// Paths to one file, each link on the way making another: links may lead in a circle.
+constexpr std::size_t kMostPaths = 100;
+
 }  // namespace
 
 FileWatch::FileWatch(Way way) : way_(way) {
@@ -37,17 +40,19 @@ void FileWatch::watch(const std::vector<SourceFile>& files, Time now) {
   if (way_ == Way::polling && !next_look_) next_look_ = now + kLook;
 }
 
-// the folder that a file stands in, or the nearest one above that exists: what is made there may become it
-void FileWatch::want(std::map<std::string, std::set<std::string>>& folders, const std::string& file) const {
-  fs::path path(file);
+// The entry in each folder on the way to a file, and to what links on the way lead to: another entry in its place
+// brings another file.
+void FileWatch::want(std::map<std::string, std::set<std::string>>& folders, std::set<std::string>& seen,
+                     const fs::path& file) const {
+  if (!seen.insert(file.string()).second || seen.size() > kMostPaths) return;
   std::error_code fault;
-  while (path.has_parent_path() && path.parent_path() != path) {
+  for (fs::path path = file; path.has_parent_path() && path.parent_path() != path; path = path.parent_path()) {
     const fs::path folder = path.parent_path();
-    if (fs::is_directory(folder, fault)) {
-      folders[folder.string()].insert(path.filename().string());
-      return;
-    }
-    path = folder;
+    if (!fs::is_directory(folder, fault)) continue;
+    folders[folder.string()].insert(path.filename().string());
+    if (!fs::is_symlink(path, fault)) continue;
+    const fs::path target = (fs::canonical(folder, fault) / fs::read_symlink(path, fault)).lexically_normal();
+    if (!fault) want(folders, seen, path == file ? target : target / file.lexically_relative(path));
   }
 }
 
@@ -55,11 +60,8 @@ void FileWatch::arm() {
   if (!events_) return;
   std::map<std::string, std::set<std::string>> wanted;
   for (const auto& [file, stamp] : files_) {
-    want(wanted, file);
-    // a link's target is what gets written
-    std::error_code fault;
-    const fs::path real = fs::canonical(file, fault);
-    if (!fault && real != file) want(wanted, real.string());
+    std::set<std::string> seen;
+    want(wanted, seen, file);
   }
   std::map<int, Folder> folders;
   for (const auto& [folder, names] : wanted) {

@@ -1,9 +1,11 @@
 // FileWatch: which of some files have changed, told once they have been quiet for a while, whatever way an editor
-// saves. It looks at folders, not at files, since saving may put another file in place. [one thread]
+// saves. It looks at the folders on the way to a file, not at the file, since saving may put another file in place, and
+// an update another folder or link. [one thread]
 #pragma once
 
 #include <chrono>
 #include <cstdint>
+#include <filesystem>
 #include <map>
 #include <optional>
 #include <set>
@@ -51,7 +53,8 @@ class FileWatch {
   };
 
   void arm();
-  void want(std::map<std::string, std::set<std::string>>& folders, const std::string& file) const;
+  void want(std::map<std::string, std::set<std::string>>& folders, std::set<std::string>& seen,
+            const std::filesystem::path& file) const;
   void read_events(Time now);
   void look(Time now);
   bool still_moving(Time now);

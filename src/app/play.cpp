@@ -372,7 +372,10 @@ int play_command(const PlayOptions& options) {
   if (options.fast && !*query) query->emplace();  // no port either
   std::vector<std::string> looked;
   const std::string scene = replays ? options.scene : find_scene(options.scene, looked);
-  Result<EngineOptions> engine_options = parse_engine(options, scene);
+  // the current folder may be replaced while the show plays
+  std::error_code fault;
+  const std::filesystem::path place = std::filesystem::absolute(scene, fault);
+  Result<EngineOptions> engine_options = parse_engine(options, fault || scene.empty() ? scene : place.string());
   if (!engine_options) return fail(kUsage, engine_options.error());
   if (scene.empty()) return fail(kInput, no_scene(options.scene, looked));
   if (options.picture.offline()) return render_scene(options, std::move(*engine_options));
