@@ -212,7 +212,10 @@ TEST(Window, WithoutOneItSaysWhy) {
   EXPECT_NE(said({"env", "-u", "DISPLAY", "-u", "WAYLAND_DISPLAY"}, {})
                 .find("headless (no display: DISPLAY and WAYLAND_DISPLAY are not set; "),
             std::string::npos);
-  EXPECT_NE(said({"env", "DISPLAY=:77777"}, {}).find("headless (no window can be opened: X11: "), std::string::npos);
+  // libX11 1.8 keeps memory of a display that it could not open
+  EXPECT_NE(said({"env", "ASAN_OPTIONS=detect_leaks=0", "DISPLAY=:77777"}, {})
+                .find("headless (no window can be opened: X11: "),
+            std::string::npos);
   EXPECT_NE(said({"env", "DISPLAY=:77777"}, {"--headless"}).find("headless; Ctrl+C"), std::string::npos);
 }
 
