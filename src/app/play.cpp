@@ -104,6 +104,7 @@ Result<EngineOptions> parse_engine(const PlayOptions& options, const std::string
   engine.current_scripts = options.current_scripts;
   // batches, replays and films leave nothing that a performer would miss
   const std::string state = state_dir();
+  if (!state.empty()) engine.locks = state + "/locks";
   if (!options.fast && options.replay.empty() && !options.picture.offline() && !state.empty())
     engine.recovery = state + "/recovery";
   engine.recover = options.recover;

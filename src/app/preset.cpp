@@ -45,7 +45,9 @@ int preset_command(const PresetCommand& command) {
   std::vector<std::string> looked;
   const std::string scene = find_scene(command.scene, looked);
   if (scene.empty()) return fail(kInput, no_scene(command.scene, looked));
-  PresetFile file(PresetFile::beside(scene));
+  const std::string state = state_dir();
+  const std::string locks = state.empty() ? "" : state + "/locks";
+  PresetFile file(PresetFile::beside(scene), PresetFile::owner_of(scene, locks, true));
   Result<PresetsRead> before = file.load();
   if (!before) return fail(kInput, before.error());
   append(before->presets, imported->presets);

@@ -41,7 +41,8 @@ struct EngineOptions {
   std::string record;                  ///< A take goes there, from the start on.
   std::string replay;                  ///< This take is played; it has the scene and all that came in.
   bool current_scripts = false;        ///< A replay reads the scene from the disk, as it is now.
-  std::string recovery;                ///< The show's values are kept in that folder as long as it plays; empty: not.
+  std::string locks;     ///< Folder of the locks with which one program owns a scene's presets; empty: none.
+  std::string recovery;  ///< The show's values are kept in that folder as long as it plays; empty: not.
   std::chrono::milliseconds recovery_every = RecoveryKeeper::kEvery;
   bool recover = false;       ///< `--recover`: what a run that did not end well has left is brought back.
   int threads = 1;            ///< That share out a step, 1 to Team::kMost, with the same result.

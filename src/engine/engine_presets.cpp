@@ -12,7 +12,8 @@ constexpr std::size_t kMostWishes = 256;  // of scripts, in a tick
 }
 
 Presets::Book Engine::read_presets(const std::string& scene) {
-  return Presets::read(scene, [this](const std::string& why) {
+  PresetFile::Owner owner = PresetFile::owner_of(scene, options_.locks, !options_.recovery.empty());
+  return Presets::read(scene, std::move(owner), [this](const std::string& why) {
     push_out({Outgoing::To::error, {}, error_message("/preset/store", why)});
   });
 }

@@ -16,7 +16,9 @@ void Engine::open_recovery() {
   if (options_.recovery.empty() || options_.scene.empty()) return;
   recovery_ = std::make_unique<RecoveryKeeper>(options_.recovery, options_.recovery_every);
   const Result<std::optional<LostValues>> lost = recovery_->open(options_.scene);
-  if (!lost) {
+  if (!recovery_->owned()) {
+    log_warning("{}{}", options_.recover ? "--recover: " : "", RecoveryKeeper::kElsewhere);
+  } else if (!lost) {
     log_error("{}", lost.error());
   } else if (!*lost) {
     if (options_.recover) log_warning("--recover: there is nothing to recover; the last run of this scene ended well");

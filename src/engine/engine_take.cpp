@@ -129,7 +129,11 @@ Outcome Engine::ask_take(const Message& message) {
   if (stage_->scene == nullptr) return Outcome::refused("there is no scene that could be recorded");
   const Result<std::string> name = take_name(message, options_.scene);
   if (!name) return Outcome::refused(name.error());
-  take_wanted_ = (std::filesystem::path(stage_->scene->show_folder()) / "takes" / (*name + ".take")).string();
+  const std::string& show = stage_->scene->show_folder();
+  const std::string folder = (std::filesystem::path(show) / "takes").string();
+  if (!is_inside(folder, show))
+    return Outcome::refused("takes/ is a link that leads out of the show's folder; put a folder in its place");
+  take_wanted_ = folder + "/" + *name + ".take";
   outcome.answers.push_back({"/take/recording", {Arg::of(*name)}});
   return outcome;
 }

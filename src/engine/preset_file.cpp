@@ -13,6 +13,7 @@
 #include "base/system/file.h"
 #include "base/system/process.h"
 #include "base/text.h"
+#include "script/files.h"
 
 namespace limber {
 
@@ -43,21 +44,19 @@ void clear_leftovers(const std::string& path) {
   }
 }
 
-// a link stays a link: what it points to is replaced
-std::string target_of(const std::string& path) {
-  std::error_code none;
-  const fs::path real = fs::canonical(path, none);
-  return none ? path : real.string();
-}
-
 }  // namespace
 
 std::string PresetFile::beside(const std::string& scene) {
   return fs::path(scene).replace_extension(".presets.json").string();
 }
 
+PresetFile::Owner PresetFile::owner_of(const std::string& scene, const std::string& locks, bool stays) {
+  return {ScriptFiles(scene, {}).show_folder(),
+          locks.empty() ? "" : fmt::format("{}/{}.presets", locks, SceneLock::name_of(scene)), stays};
+}
+
 Result<PresetsRead> PresetFile::load() {
-  clear_leftovers(path_);
+  if (!stays_ || lock_.take()) clear_leftovers(path_);
   known_ = {};
   unread_ = false;
   std::error_code none;
@@ -81,9 +80,26 @@ Result<PresetsRead> PresetFile::load() {
   return read;
 }
 
+// A link stays a link: what it leads to is replaced, if it belongs to the show.
+Result<std::string> PresetFile::target() const {
+  std::error_code none;
+  if (!fs::is_symlink(path_, none)) return path_;
+  const fs::path real = fs::canonical(path_, none);
+  if (none) return path_;  // it leads nowhere, and is replaced itself
+  const std::string folder = fs::absolute(path_).parent_path().string();
+  if (!is_inside(real.string(), folder) && (show_.empty() || !is_inside(real.string(), show_))) {
+    return Error{fmt::format("it is a link to {}, outside of the show's folder; put a file in its place",
+                             printable(real.string()))};
+  }
+  if (unread_) {
+    return Error{fmt::format("it is a link to {}, which is no file of presets; put a file in its place",
+                             printable(real.string()))};
+  }
+  return real.string();
+}
+
 // a second name for what is there, so that it is never without one
-Result<void> PresetFile::set_aside(std::string& said) const {
-  const std::string path = target_of(path_);
+Result<void> PresetFile::set_aside(const std::string& path, std::string& said) const {
   for (int n = 1; n < 10000; n++) {
     const std::string aside = fmt::format("{}.old{}", path, n == 1 ? "" : fmt::format("-{}", n));
     if (system::link_file(path, aside) ||
@@ -98,18 +114,31 @@ Result<void> PresetFile::set_aside(std::string& said) const {
 }
 
 Result<void> PresetFile::save(const PresetList& presets, std::string& said) {
-  const std::string path = target_of(path_);
+  const auto failed = [](std::string_view why) {
+    return Error{fmt::format("the presets could not be saved: {}", why)};
+  };
+  if (!lock_.take()) return failed("another program plays this scene and owns them");
+  const Result<void> written = write(presets, said);
+  if (!stays_) lock_.release();
+  return written ? written : failed(written.error());
+}
+
+Result<void> PresetFile::write(const PresetList& presets, std::string& said) {
+  const Result<std::string> place = target();
+  if (!place) return Error{place.error()};
+  const std::string& path = *place;
   const std::string fresh = fresh_name(path);
   const std::optional<system::FileStatus> now = system::file_status(path);
   const std::string text = text_of(presets);
   const auto failed = [&](const std::string& why) {
     system::remove_file(fresh);
-    return Error{fmt::format("the presets could not be saved: {}", why)};
+    return Error{why};
   };
+  if (now && !now->file) return Error{"it is no file"};
   if (const Result<void> written = system::write_whole(fresh, text, now ? now->permissions : 0644u); !written)
     return failed(written.error());
   if (now && (unread_ || !known_.holds(path))) {
-    if (const Result<void> aside = set_aside(said); !aside) return failed(aside.error());
+    if (const Result<void> aside = set_aside(path, said); !aside) return failed(aside.error());
   }
   if (std::rename(fresh.c_str(), path.c_str()) != 0) return failed(reason());
   system::sync_folder(path);

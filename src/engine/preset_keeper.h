@@ -18,8 +18,8 @@ namespace limber {
 class PresetKeeper {
  public:
   /// `failed` is told why a save failed. [the keeper's thread]
-  PresetKeeper(std::string path, std::function<void(const std::string&)> failed)
-      : file_(std::move(path)), failed_(std::move(failed)) {}
+  PresetKeeper(PresetFile file, std::function<void(const std::string&)> failed)
+      : file_(std::move(file)), failed_(std::move(failed)) {}
   /// What was to be saved is saved before it goes.
   ~PresetKeeper();
   PresetKeeper(const PresetKeeper&) = delete;

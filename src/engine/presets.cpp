@@ -41,14 +41,15 @@ std::string name_of(const Blend& blend) {
 
 }  // namespace
 
-Presets::Book Presets::read(const std::string& scene, std::function<void(const std::string&)> failed) {
+Presets::Book Presets::read(const std::string& scene, PresetFile::Owner owner,
+                            std::function<void(const std::string&)> failed) {
   Book book;
   if (scene.empty()) return book;
   const std::string path = PresetFile::beside(scene);
   std::error_code none;
   const std::filesystem::path whole = std::filesystem::weakly_canonical(path, none);
   book.file = none ? path : whole.string();
-  book.keeper = std::make_unique<PresetKeeper>(path, std::move(failed));
+  book.keeper = std::make_unique<PresetKeeper>(PresetFile(path, std::move(owner)), std::move(failed));
   Result<PresetsRead> read = book.keeper->load();
   if (!read) {
     log_error("{}; it stays as it is, and is set aside when a preset is stored", read.error());

@@ -37,7 +37,7 @@ class Presets {
   };
   /// As the file beside the scene has them; what is wrong with it is logged. `failed` is told why a save failed.
   /// [any, no tick waits for it]
-  static Book read(const std::string& scene, std::function<void(const std::string&)> failed);
+  static Book read(const std::string& scene, PresetFile::Owner owner, std::function<void(const std::string&)> failed);
   /// From now on it is this one; but a file that is open already stays as it is. The answer: the other one, which
   /// must go where a thread may wait for a disk. [sim]
   Book open(Book book);

@@ -1,4 +1,4 @@
-// A place is held by a lock on a file beside; a first line says what the values are of, presets' text follows.
+// A lock on a file beside makes it one program's; a first line says what the values are of, presets' text follows.
 #include "engine/recovery_file.h"
 
 #include <cerrno>
@@ -14,7 +14,6 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-#include "base/hash.h"
 #include "base/system/file.h"
 #include "base/text.h"
 #include "engine/preset_text.h"
@@ -25,7 +24,6 @@ namespace fs = std::filesystem;
 
 namespace {
 
-constexpr int kMostPlaces = 64;  // programs that play one scene at once
 constexpr const char* kHead = "limber recovery";
 constexpr int kVersion = 1;
 
@@ -104,27 +102,18 @@ std::shared_ptr<const Preset> changed_values(const Preset& now, const Preset& sc
 Result<std::unique_ptr<RecoveryFile>> RecoveryFile::open(const std::string& folder, const std::string& scene) {
   std::error_code fault;
   const fs::path whole = fs::weakly_canonical(fs::absolute(scene, fault), fault);
-  std::unique_ptr<RecoveryFile> file(new RecoveryFile);
-  file->scene_ = fault ? scene : whole.string();
+  const std::string path = fault ? scene : whole.string();
   fault.clear();
   if (!fs::is_directory(folder, fault)) {
     fs::create_directories(folder, fault);
     if (fault) return Error{fmt::format("{}: {}", printable(folder), fault.message())};
     fs::permissions(folder, fs::perms::owner_all, fault);
   }
-  const std::string name =
-      fmt::format("{}/{}-{:016x}", folder, fs::path(file->scene_).stem().string(), hash_bytes(file->scene_));
-  for (int n = 1; n <= kMostPlaces; n++) {
-    file->base_ = n == 1 ? name : fmt::format("{}-{}", name, n);
-    Result<system::Descriptor> lock = system::lock_file(file->locked_file());
-    if (!lock) return Error{lock.error()};
-    if (!lock->open()) continue;
-    file->lock_ = std::move(*lock);
-    // the newest that was lost is the one that counts
-    if (fs::exists(file->saved_file(), fault)) (void)std::rename(file->saved_file().c_str(), file->lost_file().c_str());
-    return file;
-  }
-  return Error{fmt::format("{} programs play {} already", kMostPlaces, printable(file->scene_))};
+  std::unique_ptr<RecoveryFile> file(new RecoveryFile(path, fmt::format("{}/{}", folder, SceneLock::name_of(scene))));
+  if (!file->lock_.take()) return std::unique_ptr<RecoveryFile>();
+  // the newest that was lost is the one that counts
+  if (fs::exists(file->saved_file(), fault)) (void)std::rename(file->saved_file().c_str(), file->lost_file().c_str());
+  return file;
 }
 
 Result<std::optional<LostValues>> RecoveryFile::lost() const {
@@ -170,8 +159,7 @@ void RecoveryFile::end(bool lost_too) {
   system::remove_file(saved_file());
   system::remove_file(fresh_file());
   if (lost_too) system::remove_file(lost_file());
-  system::remove_file(locked_file());
-  lock_ = {};
+  lock_.release();
 }
 
 }  // namespace limber

@@ -1,15 +1,16 @@
 // RecoveryFile: what a show's values are, on the disk as long as it plays, so that a start after a crash can bring them
-// back. One a scene, in a folder of the user's; several programs that play one scene have one each. [one thread]
+// back. One a scene, in a folder of the user's, of the first program that plays it. [one thread]
 #pragma once
 
 #include <ctime>
 #include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 
 #include "base/result.h"
-#include "base/system/descriptor.h"
 #include "engine/preset.h"
+#include "engine/scene_lock.h"
 
 namespace limber {
 
@@ -28,9 +29,8 @@ std::shared_ptr<const Preset> changed_values(const Preset& now, const Preset& sc
 
 class RecoveryFile {
  public:
-  /// Takes a place for that scene that no running program has; the kernel gives it back, however the program ends. What
-  /// another run has left there is kept for lost(). `folder` is made when it is not there. The error says why there
-  /// can be none.
+  /// Null: another program plays that scene, and owns its file. What another run has left there is kept for lost().
+  /// `folder` is made when it is not there. The error says why there can be none.
   static Result<std::unique_ptr<RecoveryFile>> open(const std::string& folder, const std::string& scene);
   RecoveryFile(const RecoveryFile&) = delete;
   RecoveryFile& operator=(const RecoveryFile&) = delete;
@@ -46,16 +46,16 @@ class RecoveryFile {
   const std::string& scene() const { return scene_; }
 
  private:
-  RecoveryFile() = default;
+  RecoveryFile(std::string scene, std::string base)
+      : scene_(std::move(scene)), base_(std::move(base)), lock_(base_ + ".lock") {}
 
   std::string saved_file() const { return base_ + ".json"; }
   std::string lost_file() const { return base_ + ".lost.json"; }
   std::string fresh_file() const { return base_ + ".new"; }
-  std::string locked_file() const { return base_ + ".lock"; }
 
   std::string scene_;
   std::string base_;  // what all its names begin with
-  system::Descriptor lock_;
+  SceneLock lock_;
 };
 
 }  // namespace limber

@@ -32,6 +32,8 @@ Result<std::optional<LostValues>> RecoveryKeeper::open(const std::string& scene)
   Result<std::unique_ptr<RecoveryFile>> file = RecoveryFile::open(folder_, scene);
   if (!file) return Error{"the show's values can't be kept for a start after a crash: " + file.error()};
   file_ = std::move(*file);
+  elsewhere_ = file_ == nullptr;
+  if (elsewhere_) return std::optional<LostValues>();
   return file_->lost();
 }
 
@@ -81,9 +83,9 @@ void RecoveryKeeper::run() {
       next = std::max(next + every_, Clock::now());
       asked = asks_.exchange(true) ? asked + 1 : 0;
       urges_.store(asked >= kPatience);
-      continue;
+      if (!unsaved_) continue;
     }
-    const Given given = *std::exchange(given_, std::nullopt);
+    const Given given = called ? *std::exchange(given_, std::nullopt) : *unsaved_;
     lock.unlock();
     write(given);
     lock.lock();
@@ -92,6 +94,8 @@ void RecoveryKeeper::run() {
 
 void RecoveryKeeper::write(const Given& given) {
   if (given.scene != scene_) follow(given.scene);
+  if (elsewhere_) take_over();
+  unsaved_ = elsewhere_ ? std::optional(given) : std::nullopt;
   if (file_ == nullptr) return;
   std::shared_ptr<const Preset> values = changed_values(*given.now, *given.script);
   if (same(values, saved_)) return;
@@ -103,6 +107,17 @@ void RecoveryKeeper::write(const Given& given) {
   }
 }
 
+void RecoveryKeeper::take_over() {
+  const Result<std::optional<LostValues>> lost = open(scene_);
+  if (elsewhere_) return;
+  log_info("the other program that played this scene has ended: from here on this one saves presets and values");
+  if (!lost) {
+    log_warning("{}", lost.error());
+  } else if (*lost) {
+    log_warning("{}", (*lost)->offer());
+  }
+}
+
 // another scene plays: the one before has ended well
 void RecoveryKeeper::follow(const std::string& scene) {
   if (file_ != nullptr) file_->end(brought_back_);
@@ -110,7 +125,9 @@ void RecoveryKeeper::follow(const std::string& scene) {
   saved_ = nullptr;
   brought_back_ = false;
   const Result<std::optional<LostValues>> lost = open(scene);
-  if (!lost) {
+  if (elsewhere_) {
+    log_warning("{}: {}", printable(scene), kElsewhere);
+  } else if (!lost) {
     log_warning("{}", lost.error());
   } else if (*lost) {
     log_warning("{}: {}", printable(scene), (*lost)->offer());

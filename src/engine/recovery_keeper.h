@@ -17,6 +17,9 @@ namespace limber {
 class RecoveryKeeper {
  public:
   static constexpr auto kEvery = std::chrono::seconds(5);
+  static constexpr const char* kElsewhere =
+      "another program plays this scene and owns its presets and recovery file; this one writes neither until that has "
+      "ended; takes can be recorded with --record FILE";
 
   explicit RecoveryKeeper(std::string folder, std::chrono::milliseconds every = kEvery);
   /// As a crash would: what is saved stays.
@@ -24,9 +27,12 @@ class RecoveryKeeper {
   RecoveryKeeper(const RecoveryKeeper&) = delete;
   RecoveryKeeper& operator=(const RecoveryKeeper&) = delete;
 
-  /// Takes the scene's place: what a run of it has left that did not end well. An error: what is damaged, or why
+  /// Takes the scene's file: what a run of it has left that did not end well. An error: what is damaged, or why
   /// nothing can be kept. Before begin().
   Result<std::optional<LostValues>> open(const std::string& scene);
+  /// False: another program plays the scene. What it keeps is not to be written; it is taken over once that has ended.
+  /// Before begin().
+  bool owned() const { return !elsewhere_; }
   /// What was lost is in the show's values from here on. Before begin().
   void brought_back() { brought_back_ = true; }
   /// From here on values are asked for.
@@ -50,6 +56,7 @@ class RecoveryKeeper {
   void run();
   void write(const Given& given);
   void follow(const std::string& scene);
+  void take_over();
   void stop();
 
   std::string folder_;
@@ -58,7 +65,9 @@ class RecoveryKeeper {
   std::string scene_;                   // as it was given
   std::shared_ptr<const Preset> saved_;
   bool brought_back_ = false;
-  bool told_ = false;  // that saving fails
+  bool elsewhere_ = false;        // another program has the file
+  std::optional<Given> unsaved_;  // given last, while it had
+  bool told_ = false;             // that saving fails
   std::atomic<bool> asks_{false};
   std::atomic<bool> urges_{false};
   std::mutex mutex_;

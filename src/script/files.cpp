@@ -71,11 +71,7 @@ Result<std::string> find_module(std::string_view name, const std::vector<fs::pat
       if (passed != nullptr) passed->push_back(place.string());
       continue;
     }
-    std::error_code fault;
-    const fs::path real = fs::canonical(place, fault);
-    const fs::path real_folder = fs::canonical(folder, fault);
-    const fs::path inside = real.lexically_relative(real_folder);
-    if (fault || inside.empty() || *inside.begin() == "..") {
+    if (!is_inside(place.string(), folder.string())) {
       return Error{fmt::format("'{}' leads out of {}; keep the file itself there", name, folder.string())};
     }
     return place.string();
@@ -84,6 +80,14 @@ Result<std::string> find_module(std::string_view name, const std::vector<fs::pat
 }
 
 }  // namespace
+
+bool is_inside(const std::string& file, const std::string& folder) {
+  std::error_code fault;
+  const fs::path real = fs::weakly_canonical(absolute_of(file), fault);
+  if (fault) return false;
+  const fs::path inside = real.lexically_relative(fs::weakly_canonical(absolute_of(folder), fault));
+  return !fault && !inside.empty() && *inside.begin() != "..";
+}
 
 ScriptFiles::ScriptFiles(const std::string& scene, std::string data_dir) : data_dir_(std::move(data_dir)) {
   const fs::path folder = absolute_of(scene).parent_path();

@@ -9,6 +9,9 @@
 
 namespace limber {
 
+/// Whether a file lies in a folder or below when all links are followed, whether it exists or not.
+bool is_inside(const std::string& file, const std::string& folder);
+
 class ScriptFiles {
  public:
   ScriptFiles() = default;

@@ -145,6 +145,75 @@ TEST_F(PresetFileTest, ALinkAndTheModeStay) {
   EXPECT_EQ(info.st_mode & 0777u, 0600u);
 }
 
+TEST_F(PresetFileTest, NothingIsWrittenThroughALinkOutOfTheShow) {
+  const fs::path show = folder / "show";
+  fs::create_directories(show / "scripts");
+  const std::string scene = (show / "scripts/scene.lua").string();
+  path = PresetFile::beside(scene);
+  const std::string presets = text_of(list_of(1));
+  const auto save_over = [&](const fs::path& target, const std::string& text) {
+    fs::remove(path);
+    fs::create_symlink(target, path);
+    if (!text.empty()) std::ofstream(target, std::ios::binary) << text;
+    PresetFile file(path, PresetFile::owner_of(scene, "", true));
+    (void)file.load();
+    return saved(file, list_of(2));
+  };
+  const fs::path outside = folder / "precious";
+  for (const std::string& text : {presets, std::string("export PATH")}) {
+    EXPECT_EQ(save_over(outside, text), "error: the presets could not be saved: it is a link to " + outside.string() +
+                                            ", outside of the show's folder; put a file in its place");
+    EXPECT_EQ(content(outside), text);
+    EXPECT_TRUE(fs::is_symlink(path));
+  }
+  const fs::path inside = show / "shared.json";
+  EXPECT_EQ(save_over(inside, presets), "");
+  EXPECT_EQ(PresetFile(inside.string()).load()->presets.at(0)->values, (std::vector<double>{2}));
+  EXPECT_EQ(save_over(inside, "-- a script"), "error: the presets could not be saved: it is a link to " +
+                                                  inside.string() +
+                                                  ", which is no file of presets; put a file in its place");
+  EXPECT_EQ(content(inside), "-- a script");
+  // a link that leads nowhere is replaced itself
+  EXPECT_EQ(save_over(folder / "nothing", ""), "");
+  EXPECT_FALSE(fs::exists(folder / "nothing"));
+  EXPECT_TRUE(fs::is_regular_file(fs::symlink_status(path)));
+}
+
+TEST_F(PresetFileTest, OnlyFilesAreReplaced) {
+  ASSERT_EQ(mkfifo(path.c_str(), 0600), 0);
+  PresetFile file(path);
+  EXPECT_FALSE(file.load().ok());
+  EXPECT_EQ(saved(file, list_of(1)), "error: the presets could not be saved: it is no file");
+  EXPECT_TRUE(fs::is_fifo(path));
+}
+
+TEST_F(PresetFileTest, TheFirstProgramOwnsThem) {
+  const std::string scene = (folder / "scene.lua").string();
+  const std::string locks = (folder / "state/locks").string();
+  const auto open = [&](bool stays) {
+    auto file = std::make_unique<PresetFile>(path, PresetFile::owner_of(scene, locks, stays));
+    (void)file->load();
+    return file;
+  };
+  const std::string refused = "error: the presets could not be saved: another program plays this scene and owns them";
+  auto fast = open(false);
+  auto first = open(true);
+  auto second = open(true);
+  EXPECT_EQ(saved(*second, list_of(2)), refused);
+  EXPECT_EQ(saved(*fast, list_of(3)), refused);
+  EXPECT_EQ(saved(*first, list_of(1)), "");
+  EXPECT_EQ(saved(*first, list_of(4)), "");
+  EXPECT_EQ(files(), (std::vector<std::string>{"scene.presets.json", "state"})) << "nothing was set aside";
+  first = nullptr;
+  // a program that does not hold them has them during a save alone
+  EXPECT_NE(saved(*fast, list_of(5)).find("is kept as scene.presets.json.old"), std::string::npos);
+  EXPECT_NE(saved(*second, list_of(6)).find("is kept as scene.presets.json.old-2"), std::string::npos);
+  EXPECT_EQ(saved(*fast, list_of(7)), refused);
+  EXPECT_EQ(PresetFile(path).load()->presets.at(0)->values, (std::vector<double>{6}));
+  second = nullptr;
+  EXPECT_TRUE(fs::is_empty(locks));
+}
+
 // killed in the middle of saves, at a moment that the kernel's timing chooses
 TEST_F(PresetFileTest, KilledAtAnyMomentItIsWhole) {
   Random random(9, "kill");

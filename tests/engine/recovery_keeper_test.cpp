@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <optional>
 
 #include "engine/edited.h"
 #include "engine/taken.h"
@@ -126,6 +127,25 @@ TEST(Recovery, ADamagedFileIsToldAndTheShowPlays) {
   EXPECT_TRUE(RecoveryShow::said(before, "the values of a run that did not end well can't be brought back"));
   show.ticks(3);
   EXPECT_EQ(show.read("/physics/sim/tick"), 3);
+}
+
+TEST(Recovery, TheSecondProgramTakesOverWhenTheFirstHasEnded) {
+  const RecoveryShow rig;
+  std::optional<Show> first(std::in_place, rig.options);
+  first->send("/physics/sim/gravity", 0, 0, -3.5);
+  first->ticks(1);
+  rig.play_until_saved(*first, "-3.5");
+  std::uint64_t before = log_newest();
+  Show second(rig.options);
+  EXPECT_TRUE(RecoveryShow::said(before, "another program plays this scene and owns its presets and recovery file"));
+  second.send("/physics/sim/gravity", 0, 0, -7.5);
+  second.ticks(100);
+  EXPECT_EQ(rig.saved().find("-7.5"), std::string::npos);
+  first->engine.end_recovery();
+  first.reset();
+  before = log_newest();
+  rig.play_until_saved(second, "-7.5");
+  EXPECT_TRUE(RecoveryShow::said(before, "the other program that played this scene has ended"));
 }
 
 TEST(Recovery, AnotherSceneHasItsOwn) {

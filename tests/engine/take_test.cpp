@@ -276,6 +276,31 @@ TEST(Take, MessagesAboutTakesThatMakeNoSenseAreRefused) {
   EXPECT_FALSE(std::filesystem::exists(folder.path("takes/two.take")));
 }
 
+TEST(Take, NoneIsRecordedThroughALinkOutOfTheShow) {
+  const ShowFolder folder, outside;
+  folder.write("scripts/small.lua", kSmallScene);
+  log_to_stderr(false);
+  Show show(fast_options(folder.path("scripts/small.lua")));
+  const auto record = [&] {
+    show.outbox();
+    show.send("/take/record", "one");
+    show.ticks(1);
+    return show.outbox().front();
+  };
+  std::filesystem::create_directory_symlink(outside.path(""), folder.path("takes"));
+  EXPECT_NE(record().find("takes/ is a link that leads out of the show's folder"), std::string::npos);
+  show.engine.finish_saving();
+  EXPECT_FALSE(std::filesystem::exists(outside.path("one.take")));
+  std::filesystem::remove(folder.path("takes"));
+  std::filesystem::create_directory(folder.path("recorded"));
+  std::filesystem::create_directory_symlink(folder.path("recorded"), folder.path("takes"));
+  EXPECT_EQ(record().find("/error"), std::string::npos);
+  show.send("/take/stop");
+  show.ticks(1);
+  show.engine.finish_saving();
+  EXPECT_TRUE(std::filesystem::exists(folder.path("recorded/one.take")));
+}
+
 TEST(Take, AMinuteOfAFloodIsSmall) {
   const ShowFolder folder;
   folder.write("scripts/small.lua", kSmallScene);
