@@ -57,7 +57,8 @@ Json keep(const BenchFolder& folder, int arms, const std::string& more, int tick
     }
     before = bytes;
   }
-  const auto keys = static_cast<double>(ticks / 60 - 1);
+  const int seconds = ticks / 60;
+  const double keys = seconds - 1;
   for (int i = 0; i < 3; i++) {
     link.inbox.push({{{"/transport/rewind", {Arg::of(0.9)}}}, {Hand::osc, 0x7f000001, 4000}});
     const double start = system::thread_seconds();
