@@ -4,12 +4,12 @@
 #include <algorithm>
 #include <cstdint>
 #include <cstdlib>
-#include <iterator>
 #include <utility>
 
 #include <GLFW/glfw3.h>
 #include <fmt/format.h>
 
+#include "app/key_layout.h"
 #include "base/system/process.h"
 
 namespace limber {
@@ -49,46 +49,9 @@ bool is_set(const char* variable) {
   return value != nullptr && *value != '\0';
 }
 
-struct KeyName {
-  int glfw;
-  GuiKey key;
-};
-constexpr KeyName kKeys[] = {{GLFW_KEY_TAB, GuiKey::tab},
-                             {GLFW_KEY_LEFT, GuiKey::left},
-                             {GLFW_KEY_RIGHT, GuiKey::right},
-                             {GLFW_KEY_UP, GuiKey::up},
-                             {GLFW_KEY_DOWN, GuiKey::down},
-                             {GLFW_KEY_PAGE_UP, GuiKey::page_up},
-                             {GLFW_KEY_PAGE_DOWN, GuiKey::page_down},
-                             {GLFW_KEY_HOME, GuiKey::home},
-                             {GLFW_KEY_END, GuiKey::end},
-                             {GLFW_KEY_INSERT, GuiKey::insert},
-                             {GLFW_KEY_DELETE, GuiKey::erase},
-                             {GLFW_KEY_BACKSPACE, GuiKey::backspace},
-                             {GLFW_KEY_SPACE, GuiKey::space},
-                             {GLFW_KEY_ENTER, GuiKey::enter},
-                             {GLFW_KEY_KP_ENTER, GuiKey::enter},
-                             {GLFW_KEY_ESCAPE, GuiKey::escape},
-                             {GLFW_KEY_PERIOD, GuiKey::period},
-                             {GLFW_KEY_COMMA, GuiKey::comma},
-                             {GLFW_KEY_MINUS, GuiKey::minus},
-                             {GLFW_KEY_KP_SUBTRACT, GuiKey::minus},
-                             {GLFW_KEY_EQUAL, GuiKey::equal},
-                             {GLFW_KEY_KP_ADD, GuiKey::equal},
-                             {GLFW_KEY_SLASH, GuiKey::slash}};
-
-// GLFW's own order within these runs is ours
-GuiKey gui_key(int key) {
-  const auto run = [&](int first, int last, GuiKey begin) {
-    return key >= first && key <= last ? static_cast<GuiKey>(static_cast<int>(begin) + key - first) : GuiKey::none;
-  };
-  for (const GuiKey found : {run(GLFW_KEY_A, GLFW_KEY_Z, GuiKey::a), run(GLFW_KEY_0, GLFW_KEY_9, GuiKey::digit_0),
-                             run(GLFW_KEY_F1, GLFW_KEY_F12, GuiKey::f1)}) {
-    if (found != GuiKey::none) return found;
-  }
-  const auto* const named =
-      std::find_if(std::begin(kKeys), std::end(kKeys), [&](const KeyName& k) { return k.glfw == key; });
-  return named == std::end(kKeys) ? GuiKey::none : named->key;
+std::string printed_on(int key) {
+  const char* const name = glfwGetKeyName(key, 0);
+  return name == nullptr ? "" : name;
 }
 
 KeyMods key_mods(int mods) {
@@ -251,7 +214,7 @@ void Window::on_display_lost(std::function<void()> go_on) { display_lost = std::
 void Window::on_key(GLFWwindow* window, int key, int, int action, int) {
   if (action == GLFW_REPEAT) return;  // the panel repeats by itself
   InputEvent event{.kind = InputEvent::Kind::key};
-  event.key = gui_key(key);
+  event.key = KeyLayout(printed_on).key(key);
   event.down = action == GLFW_PRESS;
   const auto held = [&](int left, int right) {
     return glfwGetKey(window, left) == GLFW_PRESS || glfwGetKey(window, right) == GLFW_PRESS;
@@ -320,6 +283,8 @@ void Window::poll(double seconds) {
     glfwPollEvents();
   }
 }
+
+KeyLabels Window::key_labels() const { return KeyLayout(printed_on).labels(); }
 
 bool Window::closed() const { return glfwWindowShouldClose(window_) == GLFW_TRUE; }
 

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "base/result.h"
+#include "gui/hotkeys.h"
 #include "gui/input.h"
 #include "view/gl.h"
 
@@ -58,6 +59,8 @@ class Window {
   /// What hands have done since the last call, for the panel. [main]
   std::vector<InputEvent> take_events();
   MouseMoves take_mouse();
+  /// What the keyboard prints on keys that act by their place. [main]
+  KeyLabels key_labels() const;
   std::string clipboard() const;
   void clipboard(const std::string& text);
   void title(const std::string& text);

@@ -119,6 +119,7 @@ void WindowShow::hear_hands(int width, int height, double now) {
   if (output_ != nullptr) {
     for (const InputEvent& key : output_->take_keys()) gui_->push(key);
   }
+  if (gui_->desk().help) gui_->key_labels(window_->key_labels());
   gui_->frame({static_cast<double>(width), static_cast<double>(height), window_->content_scale() * panel_scale_, now});
   for (const HotkeyAction action : gui_->take_actions()) act(action);
   Desk& desk = gui_->desk();

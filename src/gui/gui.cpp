@@ -90,6 +90,8 @@ Gui::Gui(EngineLink& link, GuiOptions options)
   files_ = find_fonts(options_.font_root);
   for (const std::string& line : files_.said) log_warning("{}", line);
   desk_.settings = options_.settings;
+  hotkeys_ = Hotkeys(desk_.settings.keys);
+  for (const std::string& fault : hotkeys_.faults()) log_warning("the panel's settings: {}", fault);
   desk_.copy = options_.copy;
   desk_.options = &options_;
   for (const PanelKind& kind : panel_kinds()) seats_.push_back({kind, kind.make()});
@@ -172,12 +174,34 @@ std::vector<HotkeyAction> Gui::take_actions() { return std::exchange(actions_, {
 
 void Gui::hear_keys(const std::vector<KeyPress>& keys) {
   const ImGuiIO& io = ImGui::GetIO();
+  if (!desk_.help) choosing_.clear();
   for (const KeyPress& press : keys) {
+    if (!choosing_.empty()) {
+      choose_key(press);
+      continue;
+    }
     // while somebody goes about by keys, these act on what is chosen
     if (io.NavVisible && (press.key == GuiKey::space || press.key == GuiKey::home)) continue;
-    const Hotkey* const hotkey = hotkey_of(press, io.WantTextInput);
+    const Hotkey* const hotkey = hotkeys_.of(press, io.WantTextInput);
     if (hotkey != nullptr) act(hotkey->action, press);
   }
+}
+
+// the key for the hotkey that was clicked in the help; Escape leaves it, Delete brings the first one back
+void Gui::choose_key(const KeyPress& press) {
+  const std::string name = std::exchange(choosing_, {});
+  if (press == KeyPress{GuiKey::escape, {}}) return;
+  KeyChoices& keys = desk_.settings.keys;
+  if (press == KeyPress{GuiKey::erase, {}}) {
+    keys.erase(name);
+  } else if (const std::string why = hotkeys_.against(name, press); !why.empty()) {
+    desk_.say(fmt::format("{}: {}", key_text(press), why));
+    return;
+  } else {
+    keys[name] = key_text(press);
+  }
+  hotkeys_ = Hotkeys(keys);
+  for (const std::string& fault : hotkeys_.faults()) desk_.say(fault);
 }
 
 void Gui::act(HotkeyAction action, const KeyPress& press) {
@@ -274,6 +298,29 @@ void Gui::draw_tabs(std::size_t slot, const std::vector<Seat*>& seats) {
   ImGui::PopID();
 }
 
+// a line of the help: a click waits for another key
+void Gui::draw_help_key(const Hotkey& hotkey) {
+  const bool chooses = choosing_ == hotkey.name;
+  const ImVec2 from = ImGui::GetCursorPos();
+  ImGui::PushID(hotkey.name);
+  const bool clicked = ImGui::Selectable("##key", chooses);
+  ImGui::PopID();
+  desk_.names.note(fmt::format("help:{}", hotkey.name));
+  if (clicked && hotkey.keys == 1) choosing_ = hotkey.name;
+  ImGui::SetCursorPos(from);
+  help_keys(chooses ? std::string("press a key") : shown_keys(hotkey, key_labels_));
+  ImGui::SameLine(ImGui::GetFontSize() * 11);
+  ImGui::TextUnformatted(chooses ? "Escape: as it was; Delete: as at first" : hotkey.does);
+}
+
+void Gui::help_keys(const std::string& keys) const {
+  ImGui::PushFont(desk_.fonts.code);
+  ImGui::PushStyleColor(ImGuiCol_Text, packed(Tone::accent));
+  ImGui::TextUnformatted(keys.c_str());
+  ImGui::PopStyleColor();
+  ImGui::PopFont();
+}
+
 void Gui::draw_help() {
   const ImVec2 size = ImGui::GetIO().DisplaySize;
   ImGui::SetNextWindowPos({size.x / 2, size.y / 2}, 0, {0.5F, 0.5F});
@@ -282,26 +329,22 @@ void Gui::draw_help() {
   ImGui::SetNextWindowBgAlpha(1);
   if (ImGui::Begin("##help", nullptr, kAbove | ImGuiWindowFlags_AlwaysAutoResize)) {
     // closer together, then smaller, where there are too many lines for the window
-    const float lines = static_cast<float>(hotkeys().size()) + 7;
+    const float lines = static_cast<float>(hotkeys_.all().size()) + 7;
     const float high = std::max(ImGui::GetFontSize(), imgui::font_height(*desk_.fonts.code));
     const float room = (size.y - 16 - 2 * ImGui::GetStyle().WindowPadding.y) / lines;
     ImGui::SetWindowFontScale(std::clamp(room / high, 0.5F, 1.0F));
-    ImGui::TextUnformatted("Keys and hands");
+    ImGui::TextUnformatted("Keys and hands (a click on a key chooses another)");
     ImGui::Separator();
     const auto line = [&](const char* keys, const char* does) {
-      ImGui::PushFont(desk_.fonts.code);
-      ImGui::PushStyleColor(ImGuiCol_Text, packed(Tone::accent));
-      ImGui::TextUnformatted(keys);
+      help_keys(keys);
       desk_.names.note(fmt::format("help:{}", keys));
-      ImGui::PopStyleColor();
-      ImGui::PopFont();
       ImGui::SameLine(ImGui::GetFontSize() * 11);
       ImGui::TextUnformatted(does);
     };
     ImVec2 spacing = ImGui::GetStyle().ItemSpacing;
     spacing.y = std::clamp(room - high, 0.0F, spacing.y);
     ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, spacing);
-    for (const Hotkey& hotkey : hotkeys()) line(hotkey.shown, hotkey.does);
+    for (const Hotkey& hotkey : hotkeys_.all()) draw_help_key(hotkey);
     ImGui::Separator();
     line("drag", "turn the view; Shift: shift it; wheel: nearer, further");
     line("a part", "click: choose; twice: follow; drag: pull; Ctrl: push");

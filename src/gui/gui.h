@@ -59,6 +59,8 @@ class Gui {
 
   /// The mouse is over the panel or has hold of something there: nothing for the picture.
   bool wants_mouse() const;
+  /// What the keyboard prints on keys, for the help. [main]
+  void key_labels(KeyLabels labels) { key_labels_ = std::move(labels); }
   /// Actions of hotkeys that are the window's to do, since the last call.
   std::vector<HotkeyAction> take_actions();
 
@@ -78,10 +80,13 @@ class Gui {
   void look_for_letters();
   void hear_keys(const std::vector<KeyPress>& keys);
   void act(HotkeyAction action, const KeyPress& press);
+  void choose_key(const KeyPress& press);
   void draw_slot(Slot slot);
   void draw_tabs(std::size_t slot, const std::vector<Seat*>& seats);
   void draw_mark(const Desk::Mark& mark) const;
   void draw_help();
+  void draw_help_key(const Hotkey& hotkey);
+  void help_keys(const std::string& keys) const;
   void draw_panic();
   void draw_notice() const;
 
@@ -94,6 +99,9 @@ class Gui {
   std::vector<Seat> seats_;
   std::array<std::size_t, static_cast<std::size_t>(Slot::count)> chosen_{};  // tab of each slot
   std::vector<HotkeyAction> actions_;
+  Hotkeys hotkeys_;
+  KeyLabels key_labels_;
+  std::string choosing_;        // name of the hotkey that gets the next key; empty: none
   double pixels_ = 0;           // of the fonts
   std::set<unsigned> letters_;  // of names, that the two fonts lack
   std::shared_ptr<const Tree> letters_of_;

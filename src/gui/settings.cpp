@@ -49,14 +49,24 @@ Result<PanelSettings> read_settings(std::string_view text) {
       if (path.is_string()) settings.favourites.insert(path.get<std::string>());
     }
   }
+  if (const auto keys = json.find("keys"); keys != json.end() && keys->is_object()) {
+    for (const auto& [name, key] : keys->items()) {
+      if (key.is_string()) settings.keys[name] = key.get<std::string>();
+    }
+  }
   return settings;
 }
 
 std::string settings_text(const PanelSettings& s) {
-  const Json json = {{"text_size", s.text_size},         {"hidden", s.hidden},
-                     {"morph_seconds", s.morph_seconds}, {"easing", s.easing},
-                     {"favourites", s.favourites},       {"style", s.style},
-                     {"window_width", s.window_width},   {"window_height", s.window_height}};
+  const Json json = {{"text_size", s.text_size},
+                     {"hidden", s.hidden},
+                     {"morph_seconds", s.morph_seconds},
+                     {"easing", s.easing},
+                     {"favourites", s.favourites},
+                     {"style", s.style},
+                     {"keys", s.keys},
+                     {"window_width", s.window_width},
+                     {"window_height", s.window_height}};
   return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 

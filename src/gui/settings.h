@@ -1,6 +1,7 @@
 // PanelSettings: what of the panel is remembered from show to show, as a small JSON text; where it is kept.
 #pragma once
 
+#include <map>
 #include <set>
 #include <string>
 #include <string_view>
@@ -16,10 +17,11 @@ struct PanelSettings {
   double text_size = 16;  ///< Pixels, before the display's own scale.
   bool hidden = false;    ///< F1.
   double morph_seconds = 1.5;
-  int easing = 1;                    ///< Of Easing.
-  std::set<std::string> favourites;  ///< Addresses of rows.
-  std::string style;                 ///< Of the look; empty: none was chosen.
-  int window_width = 0;              ///< 0: none yet.
+  int easing = 1;                           ///< Of Easing.
+  std::set<std::string> favourites;         ///< Addresses of rows.
+  std::map<std::string, std::string> keys;  ///< Chosen keys by the name of their hotkey: "Ctrl+R".
+  std::string style;                        ///< Of the look; empty: none was chosen.
+  int window_width = 0;                     ///< 0: none yet.
   int window_height = 0;
   bool operator==(const PanelSettings&) const = default;
 };

@@ -87,6 +87,32 @@ end)
   EXPECT_NE(display.settings().find("\"text_size\": 18"), std::string::npos) << display.settings();
 }
 
+// on Dvorak the period is where E is on a US keyboard; AZERTY prints it with Shift only, so it stays at its place
+TEST(Window, KeysAreThoseThatTheLayoutPrints) {
+  for (const std::string layout : {"dvorak", "fr"}) {
+    const Display display("320x240x24", {"-noreset"});  // else the layout goes with the program that set it
+    std::vector<std::string> words = display.environment();
+    words.insert(words.end(), {"setxkbmap", layout});
+    ASSERT_EQ(Running(words).finish().code, 0) << "apt-get install x11-xkb-utils";
+    const Folder folder;
+    const std::string scene = folder.file(
+        "s.lua", "sim:on_step(function() print(sim.paused and 'one step' or sim.tick == 30 and 'begun' or '') end)\n");
+    Running running(limber(quiet(scene), display.environment()));
+    ASSERT_TRUE(running.wait_for("limber: window")) << running.err();
+    ASSERT_TRUE(running.wait_for("begun", true));
+    display.xdotool({"mousemove", "30", "20"});
+    const auto stepped = [&] { return running.out().find("one step") != std::string::npos; };
+    // again, until the window is there to hear them
+    for (int i = 0; i < 200 && !stepped(); i++) {
+      display.xdotool({"key", layout == "fr" ? "colon" : "period", "key", "space", "sleep", "0.3"});
+      running.look();
+    }
+    EXPECT_TRUE(stepped()) << layout << running.err();
+    running.signal(SIGINT);
+    EXPECT_EQ(running.finish().code, 0);
+  }
+}
+
 // F10 opens it, it has the picture and no panel, may be sized, filled, closed, and the show goes on
 TEST(Window, ASecondOneHasThePictureAlone) {
   const Display display("1280x720x24");

@@ -1,6 +1,7 @@
 // The panel as a whole: hides, helps, grows, registers all its files, says what fonts are missing.
 #include "gui/gui.h"
 
+#include <algorithm>
 #include <filesystem>
 #include <set>
 
@@ -58,12 +59,54 @@ TEST(Gui, TheWholeHelpIsSeenInASmallWindow) {
     PanelRig rig(kScene, width, height);
     rig.key(GuiKey::f2);
     rig.frames(3);
-    const PanelRect first = rig.where("help:" + std::string(hotkeys().front().shown));
+    const PanelRect first = rig.where("help:panic");
     const PanelRect last = rig.where("help:Tab, arrows, Enter");
     EXPECT_GT(last.y, first.y);
     EXPECT_LT(last.y + last.height, height - 8) << width;
     EXPECT_GE(last.height, 11) << "and can be read";
   }
+}
+
+TEST(Gui, AClickInTheHelpChoosesAnotherKey) {
+  PanelRig rig;
+  rig.key(GuiKey::f2);
+  rig.frames(3);
+  const auto choose = [&](GuiKey key, KeyMods mods = {}) {
+    rig.click("help:panic");
+    rig.key(key, mods);
+    rig.frames(2);
+    return rig.gui->settings().keys;
+  };
+  EXPECT_EQ(choose(GuiKey::f9), (KeyChoices{{"panic", "F9"}}));
+  EXPECT_EQ(choose(GuiKey::r, kCtrl), (KeyChoices{{"panic", "F9"}})) << "that one is taken";
+  EXPECT_EQ(choose(GuiKey::escape), (KeyChoices{{"panic", "F9"}}));
+  rig.key(GuiKey::f2);
+  rig.key(GuiKey::f12);
+  rig.heard();
+  EXPECT_FALSE(rig.gui->desk().panicked());
+  rig.key(GuiKey::f9);
+  rig.heard();
+  EXPECT_TRUE(rig.gui->desk().panicked());
+  rig.key(GuiKey::f2);
+  rig.frames(3);
+  EXPECT_EQ(choose(GuiKey::erase), KeyChoices());
+  rig.click("help:recall");
+  rig.key(GuiKey::f9);
+  EXPECT_EQ(rig.gui->settings().keys, KeyChoices()) << "eight keys";
+}
+
+TEST(Gui, KeysOfTheSettingsAct) {
+  GuiOptions options = PanelRig::headless();
+  options.settings.keys = {{"help", "Ctrl+H"}, {"nothing", "F9"}};
+  EngineLink link;
+  const std::uint64_t before = log_newest();
+  Gui gui(link, options);
+  EXPECT_TRUE(std::ranges::any_of(log_since(before), [](const LogLine& line) {
+    return line.text.find("key 'F9' for 'nothing'") != line.text.npos;
+  }));
+  gui.push({.kind = InputEvent::Kind::key, .key = GuiKey::h, .down = true, .mods = kCtrl});
+  gui.frame({800, 600, 1, 0.1});
+  EXPECT_TRUE(gui.desk().help);
 }
 
 TEST(Gui, F3ShowsTheDebugPicture) {

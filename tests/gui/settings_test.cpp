@@ -21,6 +21,7 @@ PanelSettings own_settings() {
   settings.morph_seconds = 0.25;
   settings.easing = 2;
   settings.favourites = {"/physics/sim/gravity", "/scene/größe"};
+  settings.keys = {{"panic", "F9"}};
   settings.style = "studio";
   settings.window_width = 1500;
   settings.window_height = 800;
@@ -38,6 +39,8 @@ TEST(Settings, WhatIsMissingOrAbsurdIsMended) {
   EXPECT_EQ(read_settings(R"({"text_size": 400})")->text_size, 28);
   EXPECT_EQ(read_settings(R"({"text_size": "big", "favourites": [1, "/a", null]})")->text_size, 16);
   EXPECT_EQ(read_settings(R"({"favourites": [1, "/a", null]})")->favourites, std::set<std::string>{"/a"});
+  EXPECT_EQ(read_settings(R"({"keys": {"panic": "F9", "step": 3}})")->keys,
+            (std::map<std::string, std::string>{{"panic", "F9"}}));
   EXPECT_EQ(read_settings(R"({"window_width": -1e30})")->window_width, 0);
   EXPECT_FALSE(read_settings("").ok());
   EXPECT_FALSE(read_settings("[1]").ok());

@@ -1,0 +1,86 @@
+// Keys by the letters that layouts print, as X11's layouts us, fr, de, dvorak and ru print them.
+#include "app/key_layout.h"
+
+#include <GLFW/glfw3.h>
+#include <gtest/gtest.h>
+
+#include <map>
+#include <sstream>
+
+namespace limber {
+namespace {
+
+constexpr const char* kPlaces =
+    "1 2 3 4 5 6 7 8 9 0 - = Q W E R T Y U I O P [ ] A S D F G H J K L ; ' Z X C V B N M , . /";
+
+// what is printed at these places; "_" nothing, as on dead keys
+KeyLayout layout(const std::string& printed) {
+  std::map<int, std::string> names;
+  std::istringstream places(kPlaces);
+  std::istringstream letters(printed);
+  for (std::string place, letter; places >> place && letters >> letter;) names[place[0]] = letter == "_" ? "" : letter;
+  return KeyLayout([&](int key) { return names[key]; });
+}
+
+const char* const kUs = "1 2 3 4 5 6 7 8 9 0 - = q w e r t y u i o p [ ] a s d f g h j k l ; ' z x c v b n m , . /";
+const char* const kFr = "& é \" ' ( - è _ ç à ) = a z e r t y u i o p _ $ q s d f g h j k l m ù w x c v b n , ; : !";
+const char* const kDe = "1 2 3 4 5 6 7 8 9 0 ß _ q w e r t z u i o p ü + a s d f g h j k l ö ä y x c v b n m , . -";
+const char* const kDvorak = "1 2 3 4 5 6 7 8 9 0 [ ] ' , . p y f g c r l / = a o e u i d h t n s - ; q j k x b m w v z";
+const char* const kRu = "1 2 3 4 5 6 7 8 9 0 - = й ц у к е н г ш щ з х ъ ф ы в а п р о л д ж э я ч с м и т ь б ю .";
+
+TEST(KeyLayout, UsIsByPlace) {
+  const KeyLayout us = layout(kUs);
+  for (int i = 0; i < 26; i++) EXPECT_EQ(us.key(GLFW_KEY_A + i), static_cast<GuiKey>(static_cast<int>(GuiKey::a) + i));
+  for (int i = 0; i < 10; i++)
+    EXPECT_EQ(us.key(GLFW_KEY_0 + i), static_cast<GuiKey>(static_cast<int>(GuiKey::digit_0) + i));
+  EXPECT_EQ(us.key(GLFW_KEY_SLASH), GuiKey::slash);
+  EXPECT_EQ(us.key(GLFW_KEY_SEMICOLON), GuiKey::none);
+  EXPECT_EQ(us.key(GLFW_KEY_F12), GuiKey::f12);
+  EXPECT_EQ(us.key(GLFW_KEY_SPACE), GuiKey::space);
+  EXPECT_EQ(us.key(GLFW_KEY_KP_ADD), GuiKey::equal);
+  EXPECT_EQ(us.key(GLFW_KEY_UNKNOWN), GuiKey::none);
+  EXPECT_TRUE(us.labels().empty());
+}
+
+TEST(KeyLayout, AzertyFollowsItsLettersAndKeepsItsDigits) {
+  const KeyLayout fr = layout(kFr);
+  EXPECT_EQ(fr.key(GLFW_KEY_Q), GuiKey::a);
+  EXPECT_EQ(fr.key(GLFW_KEY_W), GuiKey::z);
+  EXPECT_EQ(fr.key(GLFW_KEY_Z), GuiKey::w);
+  EXPECT_EQ(fr.key(GLFW_KEY_SEMICOLON), GuiKey::m);
+  EXPECT_EQ(fr.key(GLFW_KEY_M), GuiKey::comma);
+  EXPECT_EQ(fr.key(GLFW_KEY_COMMA), GuiKey::none) << "it prints ;";
+  EXPECT_EQ(fr.key(GLFW_KEY_6), GuiKey::digit_6) << "although it prints -";
+  EXPECT_EQ(fr.key(GLFW_KEY_MINUS), GuiKey::minus);
+  EXPECT_EQ(fr.key(GLFW_KEY_PERIOD), GuiKey::period);
+  EXPECT_EQ(fr.labels().at(GuiKey::period), ":");
+  EXPECT_EQ(fr.labels().at(GuiKey::minus), ")");
+  EXPECT_FALSE(fr.labels().contains(GuiKey::z));
+}
+
+TEST(KeyLayout, QwertzAndDvorak) {
+  const KeyLayout de = layout(kDe);
+  EXPECT_EQ(de.key(GLFW_KEY_Y), GuiKey::z);
+  EXPECT_EQ(de.key(GLFW_KEY_Z), GuiKey::y);
+  EXPECT_EQ(de.key(GLFW_KEY_SLASH), GuiKey::minus);
+  EXPECT_EQ(de.key(GLFW_KEY_MINUS), GuiKey::none);
+  EXPECT_EQ(de.key(GLFW_KEY_EQUAL), GuiKey::equal) << "a dead key";
+  const KeyLayout dvorak = layout(kDvorak);
+  EXPECT_EQ(dvorak.key(GLFW_KEY_E), GuiKey::period);
+  EXPECT_EQ(dvorak.key(GLFW_KEY_W), GuiKey::comma);
+  EXPECT_EQ(dvorak.key(GLFW_KEY_SLASH), GuiKey::z);
+  EXPECT_EQ(dvorak.key(GLFW_KEY_Q), GuiKey::none);
+}
+
+TEST(KeyLayout, CyrillicStaysAtItsPlace) {
+  const KeyLayout ru = layout(kRu);
+  for (int i = 0; i < 26; i++) EXPECT_EQ(ru.key(GLFW_KEY_A + i), static_cast<GuiKey>(static_cast<int>(GuiKey::a) + i));
+  EXPECT_EQ(ru.labels().at(GuiKey::z), "я");
+  EXPECT_EQ(ru.key(GLFW_KEY_SLASH), GuiKey::period) << "it prints one";
+  EXPECT_EQ(ru.key(GLFW_KEY_PERIOD), GuiKey::none);
+  EXPECT_EQ(ru.key(GLFW_KEY_COMMA), GuiKey::comma);
+  EXPECT_EQ(key_text({GuiKey::z, {true, false, false}}, ru.labels()), "Ctrl+я");
+}
+
+}  // namespace
+}  // namespace limber
