@@ -80,6 +80,8 @@ bool types(const KeyPress& press) {
   return !press.mods.ctrl && !press.mods.alt && !function;
 }
 
+std::string_view name_of(const Hotkey& hotkey) { return hotkey.name; }
+
 bool means(const Hotkey& hotkey, const KeyPress& press) {
   const int further = static_cast<int>(press.key) - static_cast<int>(hotkey.press.key);
   return press.mods == hotkey.press.mods && further >= 0 && further < hotkey.keys;
@@ -114,7 +116,7 @@ std::optional<KeyPress> parse_key(std::string_view text) {
 Hotkeys::Hotkeys(const KeyChoices& chosen) : list_(kHotkeys.begin(), kHotkeys.end()) {
   for (const auto& [name, text] : chosen) {
     const std::optional<KeyPress> press = parse_key(text);
-    const auto hotkey = std::ranges::find_if(list_, [&](const Hotkey& h) { return h.name == name; });
+    const auto hotkey = std::ranges::find(list_, std::string_view(name), name_of);
     std::string why;
     if (hotkey == list_.end() || hotkey->keys > 1) {
       why = "there is no such key to choose";
@@ -132,7 +134,7 @@ Hotkeys::Hotkeys(const KeyChoices& chosen) : list_(kHotkeys.begin(), kHotkeys.en
 }
 
 const Hotkey* Hotkeys::named(std::string_view name) const {
-  const auto hotkey = std::ranges::find_if(list_, [&](const Hotkey& h) { return h.name == name; });
+  const auto hotkey = std::ranges::find(list_, name, name_of);
   return hotkey == list_.end() ? nullptr : &*hotkey;
 }
 
