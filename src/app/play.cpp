@@ -22,6 +22,7 @@
 #include "app/window_show.h"
 #include "base/build_info.h"
 #include "base/log.h"
+#include "base/system/resources.h"
 #include "base/system/signals.h"
 #include "base/system/thread.h"
 #include "base/text.h"
@@ -359,6 +360,8 @@ int render_scene(const PlayOptions& options, EngineOptions engine_options) {
 }  // namespace
 
 int play_command(const PlayOptions& options) {
+  const Result<void> enough = system::check_resources({24, 10 + options.threads, 512 * 1024});
+  if (!enough) return fail(kMachine, enough.error());
   system::block_signals();
   const bool replays = !options.replay.empty();
   fmt::print(stderr, "limber {} ({}): {}\n", version(), commit(), printable(replays ? options.replay : options.scene));
