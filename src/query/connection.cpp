@@ -37,8 +37,8 @@ std::optional<std::string> field(const http::request<http::empty_body>& request,
 
 class Connection : public std::enable_shared_from_this<Connection> {
  public:
-  Connection(boost::asio::ip::tcp::socket socket, QueryDesk& desk)
-      : desk_(desk), seat_(desk.seats), stream_(std::move(socket)) {}
+  Connection(boost::asio::ip::tcp::socket socket, QueryDesk& desk, std::uint32_t address)
+      : desk_(desk), seat_(desk, address), stream_(std::move(socket)) {}
   ~Connection() { desk_.answering -= answering_; }
   Connection(const Connection&) = delete;
   Connection& operator=(const Connection&) = delete;
@@ -54,7 +54,8 @@ class Connection : public std::enable_shared_from_this<Connection> {
 
   /// Too many are here already.
   void turn_away() {
-    write({503, "text/plain; charset=utf-8", "too many connections; close some\n", {}}, false, false);
+    write({503, "text/plain; charset=utf-8", "too many connections, of all or of this address; close some\n", {}},
+          false, false);
   }
   /// Its address is not let in.
   void refuse() {
@@ -153,11 +154,13 @@ class Connection : public std::enable_shared_from_this<Connection> {
 
 void serve_connection(boost::asio::ip::tcp::socket socket, QueryDesk& desk) {
   if (desk.seats >= QueryLimits::kConnections + kTurnedAway) return;
-  const bool full = desk.seats >= QueryLimits::kConnections;
   boost::system::error_code error;
   const auto peer = socket.remote_endpoint(error);
-  const bool allowed = error || !peer.address().is_v4() || desk.hall.doors().allowed(peer.address().to_v4().to_uint());
-  const auto connection = std::make_shared<Connection>(std::move(socket), desk);
+  const bool known = !error && peer.address().is_v4();
+  const std::uint32_t address = known ? peer.address().to_v4().to_uint() : 0;
+  const bool allowed = !known || desk.hall.doors().allowed(address);
+  const bool full = desk.full(address);
+  const auto connection = std::make_shared<Connection>(std::move(socket), desk, address);
   if (full) return connection->turn_away();
   if (!allowed) return connection->refuse();
   connection->read();

@@ -2,6 +2,10 @@
 // comes in; limits on sizes, counts and times are here. [query]
 #pragma once
 
+#include <cstdint>
+#include <map>
+#include <utility>
+
 #include <boost/asio/ip/tcp.hpp>
 
 #include "query/hall.h"
@@ -11,6 +15,7 @@ namespace limber {
 /// Limits on what one client may ask of us.
 struct QueryLimits {
   static constexpr int kConnections = 256;
+  static constexpr int kOfOneAddress = 64;                         ///< So that no client takes all of them.
   static constexpr std::uint32_t kHeader = 8192;                   ///< Bytes of a request's head.
   static constexpr std::size_t kFrame = std::size_t{64} << 10;     ///< Bytes of a WebSocket message that comes in.
   static constexpr std::size_t kQueue = std::size_t{1} << 20;      ///< Bytes that wait for a client; more: it goes.
@@ -21,25 +26,39 @@ struct QueryLimits {
   static constexpr int kIdleSeconds = 60;                          ///< For a WebSocket to give a sign of life.
 };
 
-/// Counts what is open, as long as it lives.
-class Seat {
- public:
-  explicit Seat(int& taken) : taken_(&taken) { ++*taken_; }
-  Seat(Seat&& other) noexcept : taken_(std::exchange(other.taken_, nullptr)) {}
-  Seat& operator=(Seat&&) = delete;
-  ~Seat() {
-    if (taken_ != nullptr) --*taken_;
-  }
-
- private:
-  int* taken_;
-};
-
 /// What connections share.
 struct QueryDesk {
   Hall& hall;
   int seats = 0;
-  std::size_t answering = 0;  ///< Bytes of answers on their way.
+  std::map<std::uint32_t, int> seats_of = {};  ///< By address.
+  std::size_t answering = 0;                   ///< Bytes of answers on their way.
+
+  bool full(std::uint32_t address) const {
+    const auto taken = seats_of.find(address);
+    return seats >= QueryLimits::kConnections ||
+           (taken != seats_of.end() && taken->second >= QueryLimits::kOfOneAddress);
+  }
+};
+
+/// Counts what is open, as long as it lives.
+class Seat {
+ public:
+  Seat(QueryDesk& desk, std::uint32_t address) : desk_(&desk), address_(address) {
+    desk.seats++;
+    desk.seats_of[address]++;
+  }
+  Seat(Seat&& other) noexcept : desk_(std::exchange(other.desk_, nullptr)), address_(other.address_) {}
+  Seat& operator=(Seat&&) = delete;
+  ~Seat() {
+    if (desk_ == nullptr) return;
+    desk_->seats--;
+    const auto taken = desk_->seats_of.find(address_);
+    if (--taken->second == 0) desk_->seats_of.erase(taken);
+  }
+
+ private:
+  QueryDesk* desk_;
+  std::uint32_t address_;
 };
 
 /// Serves a client from its first byte to its last. `desk` outlives the io_context's handlers.

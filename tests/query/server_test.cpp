@@ -251,8 +251,8 @@ TEST(QueryServer, AsManyAsThereAreSeats) {
   const ServerStage stage;
   std::vector<WebClient> idle;
   idle.reserve(256);
-  for (int i = 0; i < 256; i++) idle.emplace_back(stage.server.port());
-  WebClient late = stage.client();
+  for (int i = 0; i < 256; i++) idle.emplace_back(stage.server.port(), 0, 1 + static_cast<std::uint32_t>(i) / 64);
+  WebClient late(stage.server.port(), 0, 9);
   EXPECT_EQ(late.reply().status, 503) << "turned away, with a word";
   EXPECT_TRUE(late.ends());
   EXPECT_EQ(idle.back().get("/scene/wind?VALUE").status, 200) << "who is in is served";
@@ -265,6 +265,17 @@ TEST(QueryServer, AsManyAsThereAreSeats) {
     EXPECT_EQ(reply.status, 503);
   }
   ADD_FAILURE() << "nobody is let in any more";
+}
+
+TEST(QueryServer, OneAddressDoesNotTakeAllSeats) {
+  const ServerStage stage;
+  std::vector<WebClient> greedy;
+  greedy.reserve(100);
+  for (int i = 0; i < 100; i++) greedy.emplace_back(stage.server.port(), 0, 2);
+  int served = 0;
+  for (WebClient& client : greedy) served += client.get("/scene/wind?VALUE").status == 200;
+  EXPECT_EQ(served, 64);
+  EXPECT_EQ(stage.client().get("/scene/wind?VALUE").status, 200);
 }
 
 TEST(QueryServer, AnEngineThatDoesNotTickHoldsUpNobody) {

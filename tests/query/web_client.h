@@ -38,8 +38,13 @@ struct Frame {
 
 class WebClient {
  public:
-  explicit WebClient(std::uint16_t port, int receive_buffer = 0) : port_(port) {
+  /// `host`: the last byte of its own address, 127.0.0.1 and so on.
+  explicit WebClient(std::uint16_t port, int receive_buffer = 0, std::uint32_t host = 1) : port_(port) {
     fd_ = socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0);
+    sockaddr_in own{};
+    own.sin_family = AF_INET;
+    own.sin_addr.s_addr = htonl(INADDR_LOOPBACK - 1 + host);
+    EXPECT_TRUE(host == 1 || bind(fd_, reinterpret_cast<const sockaddr*>(&own), sizeof own) == 0);
     if (receive_buffer > 0) setsockopt(fd_, SOL_SOCKET, SO_RCVBUF, &receive_buffer, sizeof receive_buffer);
     sockaddr_in at{};
     at.sin_family = AF_INET;
