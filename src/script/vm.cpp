@@ -14,6 +14,7 @@
 #include "script/context.h"
 #include "script/prelude.h"
 #include "script/scene.h"
+#include "script/text_check.h"
 
 namespace limber {
 
@@ -35,17 +36,6 @@ int guarded(lua_State* L) {
   Guard& guard = *static_cast<Guard*>(lua_touserdata(L, lua_upvalueindex(1)));
   lua_pushboolean(L, guard.call(lua_gettop(L) - 1, 0, kind) ? 1 : 0);
   return 1;
-}
-
-// LuaJIT's compiler looks through all jumps that are open when one more comes, and a hook can't stop it
-constexpr std::size_t kMostJumps = 2000;
-
-std::size_t jumps_in(std::string_view text) {
-  std::size_t count = 0;
-  for (const std::string_view word : {"break", "goto", "elseif"}) {
-    for (auto at = text.find(word); at != text.npos; at = text.find(word, at + word.size())) count++;
-  }
-  return count;
 }
 
 // a text in pieces, between which the compiler can be stopped
@@ -80,10 +70,9 @@ lua_State* open_state(Arena& heap) {
 int load_text(lua_State* L) {
   std::size_t size = 0;
   const char* const text = lua_tolstring(L, 1, &size);
-  if (jumps_in({text, size}) > kMostJumps) {
+  if (const std::optional<TextFault> fault = text_fault({text, size})) {
     lua_pushnil(L);
-    lua_pushfstring(L, "%s:1: a text may hold %d times break, goto, elseif; part it", lua_tostring(L, 2) + 1,
-                    static_cast<int>(kMostJumps));
+    lua_pushfstring(L, "%s:%d: %s", lua_tostring(L, 2) + 1, fault->line, fault->what.c_str());
     return 2;
   }
   Pieces pieces{*static_cast<Guard*>(lua_touserdata(L, lua_upvalueindex(1))), text, size};

@@ -1,0 +1,121 @@
+// Words and signs of Lua, without strings and comments.
+#include "script/text_check.h"
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+
+#include <fmt/format.h>
+
+namespace limber {
+
+namespace {
+
+// LuaJIT's compiler looks through all jumps that are open when one more comes, and a hook can't stop it
+constexpr std::size_t kMostJumps = 2000;
+
+std::size_t jumps_in(std::string_view text) {
+  std::size_t count = 0;
+  for (const std::string_view word : {"break", "goto", "elseif"}) {
+    for (auto at = text.find(word); at != text.npos; at = text.find(word, at + word.size())) count++;
+  }
+  return count;
+}
+
+bool is_word(char c) {
+  return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_' ||
+         static_cast<unsigned char>(c) >= 0x80;
+}
+
+class Tokens {
+ public:
+  explicit Tokens(std::string_view text) : text_(text) {}
+
+  /// A word, or one sign; of a string its quote; empty: the end.
+  std::string_view next() {
+    while (at_ < text_.size()) {
+      const char c = text_[at_];
+      if (text_.compare(at_, 2, "--") == 0) {
+        at_ += 2;
+        if (!skip_long()) at_ = std::min(text_.find('\n', at_), text_.size());
+      } else if (c == ' ' || c == '\t' || c == '\r' || c == '\n' || c == '\f' || c == '\v') {
+        at_++;
+      } else {
+        return token();
+      }
+    }
+    return {};
+  }
+  int line() const { return 1 + static_cast<int>(std::count(text_.begin(), text_.begin() + begin_, '\n')); }
+
+ private:
+  std::string_view token() {
+    begin_ = static_cast<std::ptrdiff_t>(at_);
+    const std::size_t from = at_;
+    const char c = text_[from];
+    if (is_word(c)) {
+      while (at_ < text_.size() && is_word(text_[at_])) at_++;
+      return text_.substr(from, at_ - from);
+    }
+    if (c == '[' && skip_long()) return text_.substr(from, 1);
+    at_++;
+    if (c == '"' || c == '\'') {
+      while (at_ < text_.size() && text_[at_] != c && text_[at_] != '\n') at_ += text_[at_] == '\\' ? 2 : 1;
+      at_ = std::min(at_ + 1, text_.size());
+    }
+    return text_.substr(from, 1);
+  }
+
+  // behind [[ … ]] or [==[ … ]==], if one begins here
+  bool skip_long() {
+    std::size_t open = at_;
+    if (open >= text_.size() || text_[open] != '[') return false;
+    open++;
+    while (open < text_.size() && text_[open] == '=') open++;
+    if (open >= text_.size() || text_[open] != '[') return false;
+    const std::string close = "]" + std::string(open - at_ - 1, '=') + "]";
+    const std::size_t end = text_.find(close, open + 1);
+    at_ = end == text_.npos ? text_.size() : end + close.size();
+    return true;
+  }
+
+  std::string_view text_;
+  std::size_t at_ = 0;
+  std::ptrdiff_t begin_ = 0;
+};
+
+// `local a` and `for _ in (nil):f() do` behind it make LuaJIT 2.1.0-beta3 read an instruction that it has not written:
+// it expects that the first value of a loop over an iterator writes one, but a nil only lengthens the one before
+std::optional<int> nil_loop(std::string_view text) {
+  if (text.find("nil") == text.npos) return std::nullopt;
+  enum class Where : std::uint8_t { elsewhere, names, values };
+  Where where = Where::elsewhere;
+  Tokens tokens(text);
+  for (std::string_view token = tokens.next(); !token.empty(); token = tokens.next()) {
+    if (token == "for") {
+      where = Where::names;
+    } else if (where == Where::names) {
+      if (token == "in") {
+        where = Where::values;
+      } else if (token != "," && !is_word(token[0])) {
+        where = Where::elsewhere;
+      }
+    } else if (where == Where::values && token != "(") {
+      if (token == "nil") return tokens.line();
+      where = Where::elsewhere;
+    }
+  }
+  return std::nullopt;
+}
+
+}  // namespace
+
+std::optional<TextFault> text_fault(std::string_view text) {
+  if (jumps_in(text) > kMostJumps)
+    return TextFault{1, fmt::format("a text may hold {} times break, goto, elseif; part it", kMostJumps)};
+  if (const std::optional<int> line = nil_loop(text))
+    return TextFault{*line, "the values of a loop can't begin with nil; put them into a local variable before it"};
+  return std::nullopt;
+}
+
+}  // namespace limber

@@ -1,0 +1,59 @@
+// Texts that LuaJIT's compiler must not see.
+#include "script/text_check.h"
+
+#include <gtest/gtest.h>
+
+#include "stage.h"
+
+namespace limber {
+namespace {
+
+int line_of(const std::string& text) {
+  const std::optional<TextFault> fault = text_fault(text);
+  return fault ? fault->line : 0;
+}
+
+TEST(TextCheck, ALoopOverNilIsFound) {
+  EXPECT_EQ(line_of("local _\nfor _ in (nil):foo() do end"), 2);
+  EXPECT_EQ(line_of("for a, b in nil do end"), 1);
+  EXPECT_EQ(line_of("\n\nfor a,b in--[==[ ]] \n ]==]((  nil)) do end"), 4);
+  EXPECT_EQ(line_of("for a in -- for x\n nil, 1 do end"), 2);
+  EXPECT_EQ(line_of("local s = 'it\\'s' for a in (nil or pairs)(t) do end"), 1);
+}
+
+TEST(TextCheck, OtherTextsAreNot) {
+  for (const char* text :
+       {"", "local x = nil", "for i = nil, 3 do end", "for a in pairs(nil) do end", "for a in f, nil do end",
+        "-- for a in nil do end", "--[[ for a in\n nil do end ]]", "local s = 'for a in nil do end'",
+        "local s = [==[ for a in nil ]==]", "for a in nilly do end", "for a in (f)(nil) do end",
+        "local t = { [nil] = 1 }", "for a in \"nil\" do end", "'unfinished \\", "[[ unfinished", "--[[ unfinished",
+        "x.for_ = 1 y.in_ = nil"}) {
+    EXPECT_EQ(line_of(text), 0) << text;
+  }
+}
+
+TEST(TextCheck, AScriptIsToldWhere) {
+  Stage stage;
+  const std::string said = stage.run("local _\nfor _ in (nil):foo() do end\n");
+  EXPECT_TRUE(
+      said.starts_with("scripts/scene.lua:2: the values of a loop can't begin with nil; put them into a local "
+                       "variable before it"))
+      << said;
+  Stage another;
+  EXPECT_EQ(another.run("local f, why = load('local _ for _ in (nil):foo() do end') print(f, why)"), "");
+}
+
+// what the check lets through at such a place does not crash
+TEST(TextCheck, LoopsOverOtherThingsCompile) {
+  Stage stage;
+  for (const char* value : {"(false):foo()", "not nil", "(1)", "...", "{ nil }", "function() end", "(a)", "a and nil",
+                            "(-1)", "('x'):foo()", "a.b", "(a == nil)"}) {
+    for (const char* before : {"local _", "local _ = nil", "local a, b, c", "local a = 1 local b", "_x = nil", ""}) {
+      const std::string text = std::string(before) + "\nfor _ in " + value + " do end";
+      EXPECT_EQ(stage.run("local f, why = load([==[" + text + "]==]) assert(f, why)"), "") << text;
+    }
+  }
+}
+
+}  // namespace
+}  // namespace limber
