@@ -21,7 +21,7 @@ std::string said_with(Limit limit, rlim_t value, const system::Resources& needed
   return checked ? "" : checked.error();
 }
 
-constexpr system::Resources kNeeded{.descriptors = 20, .threads = 3, .stack = 256 * 1024};
+constexpr system::Resources kNeeded{.descriptors = 20, .threads = 3, .stack = std::size_t{256} * 1024};
 
 TEST(Resources, EnoughIsEnough) { EXPECT_EQ(said_with(RLIMIT_NOFILE, 256, kNeeded), ""); }
 
