@@ -33,6 +33,17 @@ void add_picture_options(CLI::App& play, PictureOptions& o) {
       ->type_name("low|medium|high")
       ->check(CLI::IsMember({"low", "medium", "high"}));
   play.add_option("--size", o.size, "of the picture or window; default 1280x720")->type_name("WxH");
+  // by a function: add_flag() sets an optional that was not given
+  const auto flag = [&play](const char* name, std::optional<bool>& value, bool is, const char* text) {
+    play.add_flag_function(
+        name, [&value, is](std::int64_t) { value = is; }, text);
+  };
+  flag("--fullscreen", o.fullscreen, true, "the window fills its monitor; remembered for the next start");
+  flag("--windowed", o.fullscreen, false, "it does so no more");
+  play.add_option("--monitor", o.monitor, "where the window opens: a number from 1, or a name; remembered")
+      ->type_name("N|NAME");
+  flag("--hide-pointer", o.hide_pointer, true, "no mouse pointer over the window; remembered");
+  flag("--show-pointer", o.hide_pointer, false, "one again");
   play.add_option("--screenshot", o.screenshot, "draw a still, without any display, and end")->type_name("FILE.png");
   play.add_option("--at", o.at, "the simulated time that --screenshot shows; left out: the start")
       ->type_name("S")

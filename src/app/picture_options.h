@@ -16,10 +16,13 @@ namespace limber {
 /// As it was typed.
 struct PictureOptions {
   bool headless = false;
-  std::string gl;          ///< Kind of OpenGL, see gl_apis().
-  std::string quality;     ///< Empty: not given.
-  std::string size;        ///< Empty: not given.
-  std::string screenshot;  ///< File of a still; empty: none.
+  std::string gl;                    ///< Kind of OpenGL, see gl_apis().
+  std::string quality;               ///< Empty: not given.
+  std::string size;                  ///< Empty: not given.
+  std::optional<bool> fullscreen;    ///< Of the window; nothing: as it was last.
+  std::string monitor;               ///< Its number from 1 or its name; empty: as it was last.
+  std::optional<bool> hide_pointer;  ///< Over the window; nothing: as it was last.
+  std::string screenshot;            ///< File of a still; empty: none.
   std::optional<double> at;
   std::string render;  ///< File of a film, or a pattern of stills; empty: none.
   std::optional<double> fps;

@@ -4,13 +4,16 @@
 #include <algorithm>
 #include <cstdint>
 #include <cstdlib>
+#include <optional>
 #include <utility>
 
 #include <GLFW/glfw3.h>
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include "app/key_layout.h"
 #include "base/system/process.h"
+#include "base/text.h"
 
 namespace limber {
 
@@ -56,6 +59,12 @@ std::string printed_on(int key) {
 
 KeyMods key_mods(int mods) {
   return {(mods & GLFW_MOD_CONTROL) != 0, (mods & GLFW_MOD_SHIFT) != 0, (mods & GLFW_MOD_ALT) != 0};
+}
+
+// in any case
+bool contains_letters(std::string_view text, std::string_view part) {
+  const auto small = [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; };
+  return !part.empty() && !std::ranges::search(text, part, {}, small, small).empty();
 }
 
 constexpr int kFromCorner = 64;  // of another screen, in its units
@@ -326,6 +335,34 @@ MouseMoves Window::take_mouse() { return std::exchange(mouse_, {}); }
 void Window::title(const std::string& text) { glfwSetWindowTitle(window_, text.c_str()); }
 
 bool Window::is_full_screen() const { return glfwGetWindowMonitor(window_) != nullptr; }
+
+Result<void> Window::move_to_monitor(const std::string& which) {
+  int count = 0;
+  GLFWmonitor** const screens = glfwGetMonitors(&count);
+  GLFWmonitor* found = nullptr;
+  std::vector<std::string> names;
+  const std::optional<double> number = parse_number(which);
+  for (int i = count - 1; i >= 0; i--) {
+    const char* const name = glfwGetMonitorName(screens[i]);
+    names.insert(names.begin(), fmt::format("{} ({})", i + 1, name == nullptr ? "" : printable(name)));
+    const bool named = name != nullptr && contains_letters(name, which);
+    if (number ? *number == i + 1 : named) found = screens[i];
+  }
+  const GLFWvidmode* const mode = found == nullptr ? nullptr : glfwGetVideoMode(found);
+  if (mode == nullptr)
+    return Error{fmt::format("there is no monitor '{}'; there are: {}", printable(which), fmt::join(names, ", "))};
+  int x = 0;
+  int y = 0;
+  int width = 0;
+  int height = 0;
+  glfwGetMonitorPos(found, &x, &y);
+  glfwGetWindowSize(window_, &width, &height);
+  glfwSetWindowPos(window_, x + std::max(0, mode->width - width) / 2, y + std::max(0, mode->height - height) / 2);
+  glfwPollEvents();  // its place counts from here
+  return {};
+}
+
+void Window::hide_pointer() { glfwSetInputMode(window_, GLFW_CURSOR, GLFW_CURSOR_HIDDEN); }
 
 void Window::toggle_full_screen() {
   if (is_full_screen()) {

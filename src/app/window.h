@@ -64,6 +64,10 @@ class Window {
   std::string clipboard() const;
   void clipboard(const std::string& text);
   void title(const std::string& text);
+  /// To the middle of a monitor: its number from 1, or its name or a part of it, in any case. The error lists them.
+  /// [main]
+  Result<void> move_to_monitor(const std::string& which);
+  void hide_pointer();
   /// To the whole screen that it is on, and back. [main]
   void toggle_full_screen();
   bool is_full_screen() const;

@@ -40,10 +40,15 @@ Result<PanelSettings> read_settings(std::string_view text) {
   settings.easing = static_cast<int>(number_of(json, "easing", settings.easing, 0, 3));
   settings.window_width = static_cast<int>(number_of(json, "window_width", 0, 0, kLargestWindow));
   settings.window_height = static_cast<int>(number_of(json, "window_height", 0, 0, kLargestWindow));
-  if (const auto hidden = json.find("hidden"); hidden != json.end() && hidden->is_boolean())
-    settings.hidden = hidden->get<bool>();
-  if (const auto style = json.find("style"); style != json.end() && style->is_string())
-    settings.style = style->get<std::string>();
+  for (const auto& [name, value] : {std::pair("hidden", &settings.hidden),
+                                    {"fullscreen", &settings.fullscreen},
+                                    {"hide_pointer", &settings.hide_pointer}}) {
+    if (const auto found = json.find(name); found != json.end() && found->is_boolean()) *value = found->get<bool>();
+  }
+  for (const auto& [name, value] : {std::pair("style", &settings.style), {"monitor", &settings.monitor}}) {
+    if (const auto found = json.find(name); found != json.end() && found->is_string())
+      *value = found->get<std::string>();
+  }
   if (const auto list = json.find("favourites"); list != json.end() && list->is_array()) {
     for (const Json& path : *list) {
       if (path.is_string()) settings.favourites.insert(path.get<std::string>());
@@ -66,7 +71,10 @@ std::string settings_text(const PanelSettings& s) {
                      {"style", s.style},
                      {"keys", s.keys},
                      {"window_width", s.window_width},
-                     {"window_height", s.window_height}};
+                     {"window_height", s.window_height},
+                     {"fullscreen", s.fullscreen},
+                     {"hide_pointer", s.hide_pointer},
+                     {"monitor", s.monitor}};
   return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 

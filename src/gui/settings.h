@@ -21,7 +21,10 @@ struct PanelSettings {
   std::set<std::string> favourites;         ///< Addresses of rows.
   std::map<std::string, std::string> keys;  ///< Chosen keys by the name of their hotkey: "Ctrl+R".
   std::string style;                        ///< Of the look; empty: none was chosen.
-  int window_width = 0;                     ///< 0: none yet.
+  bool fullscreen = false;
+  bool hide_pointer = false;
+  std::string monitor;   ///< Number or name; empty: none was chosen.
+  int window_width = 0;  ///< 0: none yet.
   int window_height = 0;
   bool operator==(const PanelSettings&) const = default;
 };

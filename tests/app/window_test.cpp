@@ -87,6 +87,30 @@ end)
   EXPECT_NE(display.settings().find("\"text_size\": 18"), std::string::npos) << display.settings();
 }
 
+TEST(Window, FillsTheScreenAndRemembersIt) {
+  const Display display("320x240x24");
+  const Folder folder;
+  const std::string scene = folder.file("s.lua", kFallingBall);
+  const auto play = [&](std::vector<std::string> more) {
+    more.insert(more.end(), {"--ticks", "30"});
+    const Ran ran = Running(limber(quiet(scene, more), display.environment())).finish();
+    EXPECT_EQ(ran.code, 0) << ran.err;
+    return ran.err;
+  };
+  const auto remembers = [&](const std::string& what) { return display.settings().find(what) != std::string::npos; };
+  play({});
+  EXPECT_FALSE(remembers("\"fullscreen\": true"));
+  play({"--fullscreen", "--monitor", "1", "--hide-pointer"});
+  for (const char* what : {"\"fullscreen\": true", "\"hide_pointer\": true", "\"monitor\": \"1\""})
+    EXPECT_TRUE(remembers(what)) << display.settings();
+  play({});
+  EXPECT_TRUE(remembers("\"fullscreen\": true"));
+  EXPECT_NE(play({"--windowed", "--show-pointer", "--monitor", "nowhere"})
+                .find("there is no monitor 'nowhere'; there are: 1 ("),
+            std::string::npos);
+  EXPECT_FALSE(remembers("\"fullscreen\": true") || remembers("\"hide_pointer\": true"));
+}
+
 // on Dvorak the period is where E is on a US keyboard; AZERTY prints it with Shift only, so it stays at its place
 TEST(Window, KeysAreThoseThatTheLayoutPrints) {
   for (const std::string layout : {"dvorak", "fr"}) {

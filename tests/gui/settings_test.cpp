@@ -23,6 +23,8 @@ PanelSettings own_settings() {
   settings.favourites = {"/physics/sim/gravity", "/scene/größe"};
   settings.keys = {{"panic", "F9"}};
   settings.style = "studio";
+  settings.fullscreen = settings.hide_pointer = true;
+  settings.monitor = "DP-1";
   settings.window_width = 1500;
   settings.window_height = 800;
   return settings;
