@@ -64,7 +64,8 @@ KeyMods key_mods(int mods) {
 // in any case
 bool contains_letters(std::string_view text, std::string_view part) {
   const auto small = [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; };
-  return !part.empty() && !std::ranges::search(text, part, {}, small, small).empty();
+  const auto same = [&](char a, char b) { return small(a) == small(b); };
+  return !part.empty() && std::search(text.begin(), text.end(), part.begin(), part.end(), same) != text.end();
 }
 
 constexpr int kFromCorner = 64;  // of another screen, in its units
