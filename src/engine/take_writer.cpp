@@ -13,6 +13,7 @@
 
 #include "base/hash.h"
 #include "base/system/file.h"
+#include "base/system/process.h"
 #include "base/system/thread.h"
 #include "base/text.h"
 #include "engine/preset_text.h"
@@ -63,7 +64,7 @@ void TakeWriter::write(std::string_view frames) {
     if (bytes_.size() > kMostPending) full_ = true;
     if (full_) return;
     bytes_.append(frames);
-    soon = bytes_.size() >= kSoon;
+    soon = bytes_.size() >= kSoon || std::exchange(first_, false);
   }
   if (soon) changed_.notify_all();
 }
@@ -109,20 +110,45 @@ Result<void> TakeWriter::open_file() {
   std::error_code ignored;
   if (place_.numbered) fs::create_directories(fs::path(place_.path).parent_path(), ignored);
   const std::string first = place_.path;
+  if (const Result<void> free = find_name(first); !free) return free;
+  part_ = fmt::format("{}.{}.part", first, system::process_id());
+  system::remove_file(part_);  // of a program of that number, which was killed
+  file_ = system::open_file(part_, system::OpenMode::create_new);
+  if (file_.open()) return {};
+  return Error{fmt::format("{} can't be written: {}", printable(first), disk_reason())};
+}
+
+// the first name that is free
+Result<void> TakeWriter::find_name(const std::string& first) {
   for (int n = 1; n < 10000; n++) {
     const std::string path = numbered(first, n);
-    file_ = system::open_file(path, system::OpenMode::create_new);
-    if (file_.open()) {
+    if (!system::link_status(path)) {
       const std::scoped_lock lock(mutex_);
       place_.path = path;
       return {};
     }
-    if (errno != EEXIST) break;
-    if (!place_.numbered)
-      return Error{
-          fmt::format("{} is there already; a take writes over nothing, so give another name", printable(first))};
+    if (!place_.numbered) break;
   }
-  return Error{fmt::format("{} can't be written: {}", printable(first), disk_reason())};
+  return Error{fmt::format("{} is there already; a take writes over nothing, so give another name", printable(first))};
+}
+
+// A file has the name of a take once a tick is in it: whenever the program is killed, it can be played.
+void TakeWriter::give_name(const std::string& first) {
+  for (int tries = 0; !part_.empty() && !failed(); tries++) {
+    if (tries == 100) return fail("other programs take every name that is free");
+    if (!system::link_file(part_, place_.path)) {
+      if (errno == EEXIST) {
+        if (const Result<void> free = find_name(first); !free) return fail(free.error());
+        continue;
+      }
+      std::error_code failed;  // a file system without links
+      fs::rename(part_, place_.path, failed);
+      if (failed) return fail(failed.message());
+    } else {
+      system::remove_file(part_);
+    }
+    part_.clear();
+  }
 }
 
 void TakeWriter::put(std::string_view bytes) {
@@ -180,6 +206,7 @@ void TakeWriter::write_all(std::string_view bytes, std::vector<Job>& jobs) {
 
 void TakeWriter::run() {
   system::name_this_thread("limber-take");
+  const std::string first = place_.path;
   const Result<void> open = open_file();
   if (open) put(head_text(header_));
   if (!open) failed_.store(true);
@@ -196,21 +223,24 @@ void TakeWriter::run() {
   }
   std::string bytes;
   std::vector<Job> jobs;
-  for (bool end = false, full = false; !end;) {
+  for (bool end = false, full = false, drop = false; !end;) {
     bytes.clear();
     jobs.clear();
     {
       std::unique_lock lock(mutex_);
-      changed_.wait_for(lock, kEvery, [this] { return end_ || !jobs_.empty() || bytes_.size() >= kSoon; });
+      changed_.wait_for(lock, kEvery,
+                        [this] { return end_ || !jobs_.empty() || bytes_.size() >= (part_.empty() ? kSoon : 1); });
       end = end_;
+      drop = abandoned_;
       full = full_;
       bytes.swap(bytes_);
       jobs.swap(jobs_);
     }
     write_all(bytes, jobs);
+    if (!bytes.empty() && !drop) give_name(first);
     if (full) fail("the take ends here: the disk is too slow for it");
   }
-  if (abandoned_) system::remove_file(place_.path);
+  if (abandoned_) system::remove_file(part_.empty() ? place_.path : part_);
   (void)system::sync_data(file_.fd());
   file_ = {};
   done_.store(true);

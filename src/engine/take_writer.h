@@ -58,6 +58,8 @@ class TakeWriter {
   };
   void run();
   Result<void> open_file();
+  Result<void> find_name(const std::string& first);
+  void give_name(const std::string& first);
   void fail(const std::string& why);
   void put(std::string_view bytes);
   void put(const Job& job);
@@ -73,11 +75,13 @@ class TakeWriter {
   system::Descriptor file_;
   std::map<std::uint64_t, std::uint32_t> contents_;  // numbers by hash
   std::string frame_;
+  std::string part_;  // the file's name until it gets that of a take; empty: it has it
 
   std::mutex mutex_;
   std::condition_variable changed_;
   std::string bytes_;  // what is to be written
   std::vector<Job> jobs_;
+  bool first_ = true;  // nothing has come yet
   bool open_ = false;
   bool end_ = false;
   bool full_ = false;

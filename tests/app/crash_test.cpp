@@ -50,6 +50,22 @@ TEST(Crash, SignalsEndTheShowWithAllFilesWhole) {
   }
 }
 
+TEST(Crash, ATakeCanBePlayedFromTheMomentItsFileIsThere) {
+  for (int round = 0; round < 3; round++) {
+    const Stopped show;
+    const std::string take = show.folder.path() + "/first.take";
+    std::vector<std::string> words = show.words();
+    words.insert(words.end(), {"--record", take});
+    Running running(words);
+    while (!std::filesystem::exists(take)) std::this_thread::yield();
+    running.signal(SIGKILL);
+    running.finish();
+    const Ran again = run({"--replay", take, "--fast"});
+    EXPECT_EQ(again.code, 0) << again.err;
+    EXPECT_NE(again.err.find("every hash is the take's; the take was cut off there\n"), std::string::npos) << again.err;
+  }
+}
+
 // it would be stopped after five seconds of computing, and that would be told
 TEST(Crash, ASceneThatIsBeingReadHoldsUpNoEnd) {
   const Stopped show;
