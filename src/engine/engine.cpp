@@ -10,6 +10,7 @@
 #include "base/log.h"
 #include "base/system/clock.h"
 #include "base/text.h"
+#include "engine/console_params.h"
 
 namespace limber {
 
@@ -259,7 +260,8 @@ void Engine::pass(bool may_step) {
   times_.commands = watch.lap();
 
   Stage& stage = *stage_;
-  const bool running = may_step && (!stage.transport.paused() || stage.transport.take_step());
+  const bool goes_on = may_step && (!stage.transport.paused() || stage.transport.take_step());
+  const bool running = replays() ? may_step : goes_on;  // the take has it
   play(running);
   watch.lap();
 
@@ -347,6 +349,15 @@ void Engine::drain() {
   }
 }
 
+// `params` that it sets are the performer's; in takes of before they were not
+Evaluation Engine::evaluate_text(std::string_view text) {
+  Scene& scene = *stage_->scene;
+  const ConsoleParams set(stage_->store, scene.params());
+  Evaluation said = scene.evaluate(text);
+  if (!replays() || player_->keeps_timers()) set.remember(hand_);
+  return said;
+}
+
 // what a person mistypes is answered to them and is no fault of the show
 void Engine::evaluate(const Evaluate& wish, const Origin& origin) {
   Evaluation said{Evaluation::Kind::error, "there is no scene to evaluate in"};
@@ -359,7 +370,7 @@ void Engine::evaluate(const Evaluate& wish, const Origin& origin) {
       if (recorder_ != nullptr) recorder_->evaluation(wish.text, origin);
       history_.note({wish.text, {}}, origin, true);
     }
-    said = wish.wish == Evaluate::Wish::run ? scene.evaluate(wish.text) : scene.complete(wish.text);
+    said = wish.wish == Evaluate::Wish::run ? evaluate_text(wish.text) : scene.complete(wish.text);
   }
   said.log_before = before;
   said.log_after = log_newest();

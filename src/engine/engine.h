@@ -194,6 +194,7 @@ class Engine : private ScriptHost {
   /// What the message cost of kTickWork.
   int execute(Message& message, const Origin& origin);
   void evaluate(const Evaluate& wish, const Origin& origin);
+  Evaluation evaluate_text(std::string_view text);
   void refuse(std::string_view address, const Origin& origin, std::string_view error);
   void call_handlers();
   void publish();

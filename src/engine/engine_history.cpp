@@ -55,7 +55,7 @@ Outcome Engine::go_back(const Transport::Back& back, const Origin& origin) {
   if (!short_of.empty()) said.args.push_back(Arg::of(short_of));
   if (recorder_ != nullptr) {
     // as far as it went: a replay may have kept more, or less
-    if (stage_->transport.paused()) recorder_->message({"/transport/pause", {}}, origin);
+    if (back.stands) recorder_->message({"/transport/pause", {}}, origin);
     recorder_->message({"/transport/rewind_ticks", {Arg::of(static_cast<double>(tick - world.tick()))}}, origin);
   }
   send_transport();
@@ -67,6 +67,7 @@ void Engine::do_again_until(const PastGoal& goal) {
   constexpr std::array<const char*, 3> kOfTheHour = {"paused", "speed", "history"};
   std::array<double, kOfTheHour.size()> of_the_hour{};
   for (std::size_t i = 0; i < kOfTheHour.size(); i++) of_the_hour[i] = stage_->world_value(kOfTheHour[i]);
+  const int steps = stage_->transport.steps();
   PresetList presets = presets_.list();
   const CallLedger calls = calls_;
   Store& store = stage_->store;
@@ -76,16 +77,22 @@ void Engine::do_again_until(const PastGoal& goal) {
   history_.bring_back(*stage_, goal);
   begin_again(true);
   bool there = false;
-  for (PastPass pass; !there && history_.next(pass);) {
+  bool stopped = false;  // a call that was good then: what follows would differ more and more, and take long
+  for (PastPass pass; !there && !stopped && history_.next(pass);) {
     there = pass.running && goal.reached(stage_->world);
-    if (!there) do_again(pass);
+    if (there) continue;
+    do_again(pass);
+    stopped = calls_.unforeseen() > 0;
   }
   history_.cut(there);
   begin_again(false);
+  if (stopped) log_warning("rewind: a script computes too long in what is repeated; time went back further than asked");
   presets_.take_list(std::move(presets));
   for (std::size_t i = 0; i < kOfTheHour.size(); i++)
     (void)store.set(stage_->world.id(), kOfTheHour[i], {&of_the_hour[i], 1});
+  stage_->transport.keep_steps(steps);
   calls_ = calls;
+  calls_.note_rewind();
   store.listen(hands);
   stage_->dispatch.begin_tick();
 }
@@ -109,7 +116,7 @@ void Engine::do_again(PastPass& pass) {
       if (!input.evaluate) {
         execute(input.message, input.origin);
       } else if (stage_->scene != nullptr) {
-        (void)stage_->scene->evaluate(input.message.address);
+        (void)evaluate_text(input.message.address);
       }
     }
   }
@@ -125,6 +132,7 @@ bool Engine::return_before(std::uint64_t tick) {
   presets_.take_list(presets);
   heard_.clear();
   wishes_.clear();
+  calls_.note_rewind();
   went_back_ = true;
   return true;
 }

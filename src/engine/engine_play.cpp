@@ -10,9 +10,12 @@ namespace limber {
 namespace {
 
 // of a replay: what was stopped then is stopped again, and nothing else is, unless the runs have parted
-ScriptLimits wide_limits() {
+// A take has the calls that are stopped. Others end, too, when the runs differ: in a show that plays the take, soon
+// enough for the performer.
+ScriptLimits wide_limits(bool in_show) {
   ScriptLimits limits;
-  limits.call_ms *= 100;
+  limits.call_ms *= in_show ? 10 : 100;
+  limits.again_ms *= in_show ? 1 : 10;
   limits.run_ms *= 10;
   limits.memory *= 16;
   return limits;
@@ -23,7 +26,8 @@ ScriptLimits wide_limits() {
 // a run of the scene that is made now, or a later one
 SceneOptions Engine::scene_options() const {
   SceneOptions options = options_.scene_options;
-  if (replays() && !player_->current_scripts()) options.limits = wide_limits();
+  if (replays() && !player_->current_scripts()) options.limits = wide_limits(plays_);
+  if (replays()) options.keep_timers = player_->keeps_timers();
   return options;
 }
 
@@ -86,7 +90,7 @@ Result<void> Engine::try_take(TakePlayer& player) {
   if (runs.empty() || !runs.front().good) return Error{"its scene did not run when it was recorded either"};
   SceneOptions options = options_.scene_options;
   options.package_paths = player.begin().package_paths;
-  options.limits = wide_limits();
+  options.limits = wide_limits(true);
   options.sources = player.sources(runs.front());
   Stage stage(link_, presets_, edits_, {});  // never steps
   return stage.run_beside(player.begin().scene, *this, options);

@@ -90,6 +90,7 @@ void History::end_pass(Stage& stage, const CallLedger& calls, bool running, doub
     why_ = "history is switched off";
     spare_.clear();
     if (pages_.bytes() == 0) pages_.clear();
+    release_runs(stage);
     return;
   }
   const std::uint64_t structure = stage.store.structure_version();
@@ -97,7 +98,7 @@ void History::end_pass(Stage& stage, const CallLedger& calls, bool running, doub
   if (other && !keys_.empty()) begin_anew("things came or went");
   if (!keys_.empty()) {
     KeyBytes& inputs = keys_.back()->inputs;
-    for (const StoppedCall& stop : calls.stopped()) {
+    for (const StoppedCall& stop : calls.stopped_since_rewind()) {
       auto record = Record::stop;
       inputs.pass(record);
       stop_ = stop;
@@ -112,6 +113,13 @@ void History::end_pass(Stage& stage, const CallLedger& calls, bool running, doub
   }
   if (due(stage.world, !calls.stopped().empty())) take(stage);
   trim(stage.world, seconds);
+  release_runs(stage);
+}
+
+// runs of the scene whose last timer had ended before the oldest state
+void History::release_runs(Stage& stage) const {
+  if (stage.scene == nullptr) return;
+  stage.scene->release_ended(held_ != nullptr ? held_->tick : empty() ? kNoTick : oldest_tick());
 }
 
 bool History::due(const World& world, bool stopped) const {

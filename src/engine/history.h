@@ -107,6 +107,7 @@ class History {
   void forget(std::unique_ptr<Key> key);
   void let_go_oldest();
   void trim(const World& world, double seconds);
+  void release_runs(Stage& stage) const;
   static void pass_input(KeyBytes& bytes, TakeMessage& input);
   static void pass_stop(KeyBytes& bytes, StoppedCall& stop);
 

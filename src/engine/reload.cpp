@@ -8,8 +8,17 @@
 
 #include "base/log.h"
 #include "engine/preset_taker.h"
+#include "script/earlier_runs.h"
 
 namespace limber {
+
+namespace {
+
+std::string counted(std::uint64_t count, std::string_view what) {
+  return fmt::format("{} {}{}", count, what, count == 1 ? "" : "s");
+}
+
+}  // namespace
 
 Reload::Reload(std::string file, ScriptHost& host, PerformerHand& hand)
     : file_(std::move(file)), host_(host), hand_(hand) {}
@@ -56,6 +65,7 @@ Reload::End Reload::take(Draft& draft, Stage& stage) {
   const auto set_by_scene = [&](NodeId id, const Row& row) {
     if (hand_.size() > 0) hand_.give_back(fmt::format("{}/{}", store.path(id), row.name));
   };
+  if (stage.scene != nullptr) stage.scene->note_things();
   apply({stage.world, draft.world(), *description_, *draft.description(), draft.difference(), set_by_scene}, things_);
   const auto live_id = [&](NodeId id) { return draft.live_id(id, stage.world, things_.shapes, things_.bodies); };
   std::unique_ptr<Scene>& scene = draft.scene();
@@ -74,7 +84,28 @@ Reload::End Reload::take(Draft& draft, Stage& stage) {
     say_mended();
     log_info("{} was read again", stage.scene->fault().file);
   }
+  say_kept(stage.scene->kept(), from_disk);
   return End::applied;
+}
+
+// another value of a parameter with `rerun` may come many times a second, so that alone tells of a loss only
+void Reload::say_kept(const KeptTimers& kept, bool from_disk) {
+  if (kept.ended > 0) {
+    log_warning("{} scheduled by the oldest run ended: a scene keeps the timers of {} runs before the last save",
+                counted(kept.ended, "timer"), EarlierRuns::kMax);
+  }
+  if (!from_disk) return;
+  if (kept.timers > 0) {
+    log_info("{} set by callbacks before the save {} on{}; a reset ends {}", counted(kept.timers, "timer"),
+             kept.timers == 1 ? "goes" : "go", kept.repeating > 0 ? fmt::format(" ({} repeating)", kept.repeating) : "",
+             kept.timers == 1 ? "it" : "them");
+  }
+  if (kept.handlers > 0) {
+    log_warning(
+        "{} registered in callbacks ended with the save (osc:on, sim:on_step, sim:on_contact); register them at "
+        "the top level",
+        counted(kept.handlers, "handler"));
+  }
 }
 
 void Reload::say_mended() {

@@ -31,8 +31,11 @@ class Reload {
              std::vector<SourceFile> tried = {});
   /// What a draft is made from now. `again`: of what the last good run has read, not of the disk. [sim]
   DraftOrder order(const Stage& stage, bool again);
-  /// What scripts of later drafts may take. [sim]
-  void limit(const ScriptLimits& limits) { options_.limits = limits; }
+  /// A take has ended: what scripts of later drafts may take. [sim]
+  void limit(const ScriptLimits& limits) {
+    options_.limits = limits;
+    options_.keep_timers = true;
+  }
   /// Applies a draft that was made from such an order. [sim]
   End take(Draft& draft, Stage& stage);
   /// Whether a parameter with `rerun` has another value than at the last call and the last order. [sim]
@@ -48,6 +51,7 @@ class Reload {
  private:
   void keep_files(std::vector<SourceFile> files);
   void say_mended();
+  static void say_kept(const KeptTimers& kept, bool from_disk);
 
   std::string file_;
   SceneOptions options_;

@@ -20,7 +20,10 @@
 namespace limber {
 
 /// 3: the hashes leave out what is at its default; takes of 1 and 2 can be played, not compared.
-inline constexpr int kTakeVersion = 3;
+/// 4: a save keeps timers (SceneOptions::keep_timers).
+inline constexpr int kTakeVersion = 4;
+inline constexpr int kTakeComparable = 3;
+inline constexpr int kTakeKeepsTimers = 4;
 /// The file's first line; the second is JSON that people can read. Frames follow.
 inline constexpr const char* kTakeHead = "limber take ";
 

@@ -33,6 +33,8 @@ class TakePlayer {
 
   const TakeBegin& begin() const { return reader_->begin(); }
   bool current_scripts() const { return current_; }
+  /// Whether saves kept timers when it was recorded.
+  bool keeps_timers() const { return reader_->header().version >= kTakeKeepsTimers; }
   /// Goes on to the next tick; false: there is none, or the runs have parted and nothing more is to be found out.
   bool next();
   /// Whether time goes on in the tick that next() will bring.
@@ -65,7 +67,7 @@ class TakePlayer {
   /// The take has more than the present tick.
   bool ahead() const { return ahead_at_ < ahead_end_; }
   /// Its hashes are made as ours.
-  bool comparable() const { return reader_->header().version == kTakeVersion; }
+  bool comparable() const { return reader_->header().version >= kTakeComparable; }
   void find_body(World& world);
   bool ends_well(const std::function<std::uint64_t()>& state_hash) const;
 

@@ -20,6 +20,9 @@ class Transport {
   bool paused() const;
   /// Ticks that `step` asked for and that were not taken yet; taking one counts it.
   bool take_step();
+  /// How many they are; a rewind, which repeats messages, leaves them as they are.
+  int steps() const { return steps_; }
+  void keep_steps(int steps) { steps_ = steps; }
   /// How far back a message asked to go since the last call, if one did.
   struct Back {
     double seconds = 0;

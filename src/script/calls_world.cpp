@@ -243,10 +243,15 @@ std::int32_t param_done(void* c) {
 
 std::int32_t params_node(void* c) {
   ScriptContext& context = context_of(c);
-  context.tell(context.params->id());
-  context.answer.count = static_cast<std::int32_t>(context.world->store().table_number(context.params->table()));
+  const NodeId id = context.params != nullptr ? context.params->id() : context.params_of_show;
+  if (!context.alive(id)) return kGone;
+  context.tell(id);
+  Store& store = context.world->store();
+  context.answer.count = static_cast<std::int32_t>(store.table_number(store.table(id)));
   return kOk;
 }
+
+void cancel_timer(void* c, std::int32_t run, std::int32_t number) { context_of(c).cancels.push_back({run, number}); }
 
 void handles(void* c, std::int32_t** ids, std::int32_t count) {
   context_of(c).things = {ids, static_cast<std::size_t>(count)};

@@ -74,12 +74,14 @@ void ScriptContext::count_call() {
 void ScriptContext::begin_call() {
   count_call();
   reset_wanted = panic_wanted = false;
+  cancels_before_call = cancels.size();
   means_of_all = {};
   world->undo().begin();
 }
 
 bool ScriptContext::next_call() {
-  if (!world->undo().untouched() || !held.empty() || reset_wanted || panic_wanted) {
+  if (!world->undo().untouched() || !held.empty() || reset_wanted || panic_wanted ||
+      cancels.size() > cancels_before_call) {
     end_call(true);
     begin_call();
     return true;
@@ -109,6 +111,7 @@ void ScriptContext::end_call(bool good) {
   } else {
     forces.take_back();
     world->undo().take_back();
+    cancels.resize(cancels_before_call);
     random = random_before_;
     seeded_with = seeded_before_;
   }

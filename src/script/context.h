@@ -83,8 +83,9 @@ struct ScriptContext {
   bool handling_message = false;
   std::int32_t handlers = 0;  ///< Registered by osc:on.
   std::unique_ptr<ParamsNode> params;
-  std::uint64_t rerun_rows = 0;                ///< Parameters with `rerun`, a bit a row.
-  std::optional<double> timers_at;             ///< Time at which timers were looked at last.
+  NodeId params_of_show;            ///< Of an earlier run, which has none itself: those of the run that plays, or none.
+  std::uint64_t rerun_rows = 0;     ///< Parameters with `rerun`, a bit a row.
+  std::optional<double> timers_at;  ///< Time at which timers were looked at last.
   std::span<std::int32_t* const> things;       ///< Slot and generation of every handle, while these are given others.
   std::shared_ptr<BehaviorScripts> behaviors;  ///< Shared with the behaviours that live in the world.
 
@@ -100,6 +101,12 @@ struct ScriptContext {
   std::vector<Held> held;
   std::size_t held_text = 0;  ///< Bytes of text in them.
   std::vector<Message> preset_wishes;
+  struct Cancel {
+    std::int32_t run;
+    std::int32_t number;
+  };
+  std::vector<Cancel> cancels;          ///< Timers of earlier runs, by this call and by those that ended well.
+  std::size_t cancels_before_call = 0;  ///< Those of the latter.
   bool reset_wanted = false;
   bool panic_wanted = false;
   ForceQueue forces;

@@ -26,7 +26,6 @@ namespace limber {
 namespace {
 
 constexpr std::int64_t kMillisecond = 1'000'000;
-constexpr double kNoEnd = 1e9;  // ms
 // calls must be noticed this soon after they begin, as a part of their budget; at most every 4 ms
 std::int64_t poll_of(const ScriptLimits& limits) {
   return std::clamp(static_cast<std::int64_t>(limits.call_ms * kMillisecond / 10), std::int64_t{200'000},
@@ -172,7 +171,7 @@ void Guard::begin(Kind kind) {
   }
   memory_.begin_call(again_);
   running_here = this;
-  const double budget = again_ ? kNoEnd : kind == Kind::call ? limits_.call_ms : limits_.run_ms;
+  const double budget = again_ ? limits_.again_ms : kind == Kind::call ? limits_.call_ms : limits_.run_ms;
   watch_.begin(static_cast<std::int64_t>(budget * kMillisecond));
 }
 

@@ -77,7 +77,8 @@ class Guard {
   const Memory& memory() const { return memory_; }
   /// A key state takes the count of what Lua holds, and brings it back with that.
   void pass_memory(KeyBytes& key);
-  /// While `on`, nothing is stopped but the calls that the ledger forbids: what was done once is done again.
+  /// While `on`, what was done once is done again: only the calls that the ledger forbids are stopped, and those that
+  /// take many times what they took then, because the runs differ.
   void do_again(bool on) { again_ = on; }
 
  private:

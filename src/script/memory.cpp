@@ -14,6 +14,7 @@ namespace {
 constexpr std::size_t kMegabyte = std::size_t{1} << 20u;
 constexpr std::size_t kLarge = 16 * kMegabyte;       // one such request stops the script that makes it
 constexpr std::size_t kImpossible = 32 * kMegabyte;  // one such request is refused
+constexpr std::size_t kMuch = 256 * kMegabyte;       // what a call may add that was good before
 constexpr std::size_t kAlarmStep = kMegabyte / 4;
 // What a call may add when the memory is full: less and less the more is held beyond the cap, so that the one who takes
 // most is stopped first; nothing at three times the cap.
@@ -41,7 +42,11 @@ void Memory::detach(lua_State* state) { lua_setallocf(state, inner_, inner_self_
 void Memory::pass(KeyBytes& key) { key.pass(used_); }
 
 void Memory::begin_call(bool free) {
-  if (free) return end_call();
+  if (free) {
+    end_call();
+    alarm_ = used_ + kMuch;
+    return;
+  }
   in_call_ = true;
   alarm_ = std::max(cap_, used_ + headroom(used_, cap_));
 }

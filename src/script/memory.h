@@ -22,7 +22,7 @@ class Memory {
   void detach(lua_State* state);
 
   /// Only what is taken between these two is watched.
-  /// `free`: nothing is, since it was good before.
+  /// `free`: only what no good call takes, since it was good before.
   void begin_call(bool free = false);
   void end_call() {
     alarm_ = kNever;

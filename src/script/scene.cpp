@@ -4,12 +4,14 @@
 #include <filesystem>
 
 #include "script/context.h"
+#include "script/earlier_runs.h"
 #include "script/vm.h"
 
 namespace limber {
 
 Scene::Scene(World& world, ScriptHost& host, SceneOptions options, VmMode wanted)
-    : context_(std::make_unique<ScriptContext>(world, host, std::move(options))),
+    : earlier_(std::make_unique<EarlierRuns>()),
+      context_(std::make_unique<ScriptContext>(world, host, std::move(options))),
       vm_(std::make_unique<Vm>(*context_, wanted)) {}
 
 Scene::~Scene() = default;
@@ -33,6 +35,7 @@ Result<void> Scene::run(const std::string& file, const RunInputs* beside) {
     c.world->restart_time(beside->tick, beside->time);
     vm_->begin_beside(beside->state);
   }
+  if (beside == nullptr) vm_->number_run(run_number_);
   c.answer.top_level = 1;
   Result<void> ran = vm_->run(*text, c.files.shown(file), fault_);
   c.generator();  // the seed as the top level leaves it
@@ -47,12 +50,19 @@ std::shared_ptr<const Sources> Scene::sources() const { return context_->sources
 
 void Scene::count_calls(CallLedger& calls) { context_->calls = &calls; }
 
-void Scene::limit(const ScriptLimits& limits) { vm_->guard().limit(limits); }
+void Scene::limit(const ScriptLimits& limits) {
+  vm_->guard().limit(limits);
+  context_->options.limits = limits;
+  context_->options.keep_timers = true;
+  earlier_->limit(limits);
+}
 
 void Scene::start() { vm_->start(); }
 
 void Scene::tick(double dt) {
   context_->timers_at = context_->world->time();
+  earlier_->cancel(*context_, context_->world->tick());
+  earlier_->tick(*vm_, context_->world->tick());
   vm_->tick(dt);
 }
 
@@ -68,11 +78,17 @@ bool Scene::message(const Message& message, const Origin& origin) {
   return heard;
 }
 
-void Scene::collect_garbage() { vm_->collect_garbage(); }
+void Scene::collect_garbage() {
+  vm_->collect_garbage();
+  earlier_->collect_garbage();
+}
 
-std::uint64_t Scene::state_hash(std::uint64_t start) const { return context_->hash(start); }
+std::uint64_t Scene::state_hash(std::uint64_t start) const { return earlier_->hash(context_->hash(start)); }
 
-void Scene::do_again(bool on) { vm_->guard().do_again(on); }
+void Scene::do_again(bool on) {
+  vm_->guard().do_again(on);
+  earlier_->do_again(on);
+}
 
 VmMode Scene::mode() const { return vm_->mode(); }
 

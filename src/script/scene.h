@@ -21,6 +21,8 @@ namespace limber {
 class Sources;
 class World;
 class CallLedger;
+class EarlierRuns;
+class HandleNames;
 class Vm;
 struct ScriptContext;
 
@@ -28,6 +30,14 @@ struct ScriptContext;
 struct ScriptPlace {
   std::string file;
   int line = 0;
+};
+
+/// What a save has left of the scheduled calls of the runs before.
+struct KeptTimers {
+  std::uint64_t timers = 0;     ///< That callbacks have set, and that go on.
+  std::uint64_t repeating = 0;  ///< Those of them without an end.
+  std::uint64_t ended = 0;      ///< Ended now, because too many runs had some.
+  std::uint64_t handlers = 0;   ///< Registered in callbacks (osc:on, sim:on_step, sim:on_contact), ended now.
 };
 
 class Scene {
@@ -49,7 +59,7 @@ class Scene {
   std::shared_ptr<const Sources> sources() const;
   /// From here on guarded calls are counted there; it outlives the scene. [sim]
   void count_calls(CallLedger& calls);
-  /// What scripts may take from here on. [sim]
+  /// A take has ended: what scripts may take from here on. [sim]
   void limit(const ScriptLimits& limits);
   /// The callbacks of on_start; the world is settled before.
   void start();
@@ -74,10 +84,17 @@ class Scene {
   RunInputs inputs();
   /// After a good run beside the show, still on its thread: what takes long of becoming the show.
   void prepare();
+  /// Before things are made again for a run that becomes the show: notes the handles of functions that go on.
+  void note_things();
   /// The run beside the show `before` (null: there was none) becomes the show: its handles are given the ids that
-  /// things have in `world`; parameters, `state` and the beat of timers are handed over. The answer: rows of the
-  /// parameters that start at their defaults again. `before` may then be destroyed on any thread.
+  /// things have in `world`; parameters, `state` and the beat of timers are handed over. Where callbacks of `before`
+  /// have set timers, these go on with its functions and variables. The answer: rows of the parameters that start at
+  /// their defaults again. `before` may then be destroyed on any thread.
   std::uint64_t become_live(World& world, const std::function<NodeId(NodeId)>& live_id, Scene* before);
+  /// What become_live() has kept of the runs before.
+  const KeptTimers& kept() const { return kept_; }
+  /// Runs whose timers had all ended before that tick are released: nothing goes back to it. [sim]
+  void release_ended(std::uint64_t before_tick);
   /// The node of the scene's parameters, or a null id.
   NodeId params() const;
   /// Values of the parameters with `rerun`, one after the other.
@@ -95,9 +112,14 @@ class Scene {
 
  private:
   friend class SceneKey;
+  void keep_run(Scene& before);
+  std::unique_ptr<EarlierRuns> earlier_;
   std::unique_ptr<ScriptContext> context_;
   std::unique_ptr<Vm> vm_;
   ScriptPlace fault_;
+  std::uint64_t run_number_ = 1;
+  KeptTimers kept_;
+  std::unique_ptr<HandleNames> names_;  // from note_things() to become_live(), where the run is kept
 };
 
 }  // namespace limber

@@ -1,13 +1,16 @@
 // SceneKey: a scene between two ticks: Lua's whole heap, generators, timers, to be brought back to the bit. [sim]
 #pragma once
 
+#include <cstdint>
+#include <vector>
+
 #include "base/key_bytes.h"
 #include "base/page_store.h"
 
 namespace limber {
 
 class Scene;
-struct ScriptContext;
+class Vm;
 
 class SceneKey {
  public:
@@ -20,10 +23,22 @@ class SceneKey {
   void release(PageStore& pages);
 
  private:
-  static void pass(KeyBytes& key, ScriptContext& context);
+  /// One Lua state: its heap, and the numbers beside it.
+  struct State {
+    PageStore::Image heap, own;
+    std::size_t own_size = 0;
+  };
+  struct EarlierState {
+    std::uint64_t number = 0;  // of the run
+    State state;
+  };
+  template <class Beside>
+  static void take(State& to, Vm& vm, PageStore& pages, const State* before, KeyBytes& scratch, Beside pass);
+  template <class Beside>
+  static void bring_back(const State& from, Vm& vm, const PageStore& pages, KeyBytes& scratch, Beside pass);
 
-  PageStore::Image heap_, own_;
-  std::size_t own_size_ = 0;
+  State state_;
+  std::vector<EarlierState> earlier_;  // runs with timers that go on
 };
 
 }  // namespace limber

@@ -3,6 +3,7 @@
 
 #include "script/behavior_scripts.h"
 #include "script/context.h"
+#include "script/earlier_runs.h"
 #include "script/scene.h"
 #include "script/vm.h"
 
@@ -19,6 +20,40 @@ RunInputs Scene::inputs() {
 }
 
 void Scene::prepare() { vm_->prepare(); }
+
+void Scene::note_things() {
+  const bool keeps = context_->options.keep_timers && vm_->callback_timers().timers > 0;
+  earlier_->note_things();
+  names_ = keeps ? std::make_unique<HandleNames>() : nullptr;
+  if (!keeps) return;
+  vm_->gather_handles();
+  names_->note(*context_);
+}
+
+void Scene::release_ended(std::uint64_t before_tick) { earlier_->release_ended(before_tick); }
+
+// of a run whose place this one takes
+void Scene::keep_run(Scene& before) {
+  ScriptContext& old = *before.context_;
+  old.behaviors->close();  // it may go on another thread
+  run_number_ = before.run_number_ + 1;
+  before.earlier_->cancel(old, old.world->tick());
+  earlier_ = std::move(before.earlier_);
+  kept_ = {};
+  if (before.names_ == nullptr) {
+    old.look_at(nullptr);
+  } else {
+    EarlierRuns::Run run(std::move(before.context_), std::move(before.vm_));
+    run.names = std::move(*before.names_);
+    run.number = before.run_number_;
+    kept_.handlers = run.vm->become_earlier();
+    kept_.ended = earlier_->add(std::move(run));
+  }
+  earlier_->follow_things(params());
+  const EarlierRuns::Counts counts = earlier_->counts();
+  kept_.timers = counts.timers;
+  kept_.repeating = counts.repeating;
+}
 
 std::uint64_t Scene::become_live(World& world, const std::function<NodeId(NodeId)>& live_id, Scene* before) {
   ScriptContext& c = *context_;
@@ -51,12 +86,13 @@ std::uint64_t Scene::become_live(World& world, const std::function<NodeId(NodeId
   }
   if (old != nullptr) {
     vm_->take_state(before->vm_->state_text());
+    if (c.options.keep_timers) vm_->take_afters(before->vm_->afters_text());
     c.timers_at = old->timers_at;
-    old->behaviors->close();  // it may go on another thread
-    old->look_at(nullptr);
+    before->disarm();
+    keep_run(*before);
   }
+  vm_->number_run(run_number_);
   vm_->become_live(c.timers_at);
-  if (before != nullptr) before->disarm();
   arm();
   c.host.plan_osc(c.plan);
   return defaults;

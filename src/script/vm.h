@@ -76,6 +76,30 @@ class Vm {
   /// Handles have other ids now; timers go on from where they were looked at last, if they were. [sim]
   void become_live(std::optional<double> timers_at);
 
+  // An earlier run, whose place another one has taken; only timers of its callbacks go on.
+  /// Timers that callbacks have set, and how many of them repeat.
+  struct CallbackTimers {
+    std::uint64_t timers = 0;
+    std::uint64_t repeating = 0;
+  };
+  CallbackTimers callback_timers();
+  /// All that is no such timer ends; how many handlers of callbacks there were among it.
+  std::uint64_t become_earlier();
+  /// Top-level timers of sim:after as text, and those of the run before this one.
+  std::string afters_text();
+  void take_afters(std::string_view afters);
+  /// Timers in `state` name the run by this number.
+  void number_run(std::uint64_t number);
+  void cancel_timer(std::int32_t number);
+  /// Every handle is told to the context (ScriptContext::things); later, that they may have other ids.
+  void gather_handles();
+  void handles_moved();
+  bool timers_due();
+  /// Calls those that are due; how many timers are left.
+  std::uint64_t run_timers();
+  /// What has changed from one text of `state` to the next is changed in this run's too.
+  void change_state(std::string_view before, std::string_view after);
+
   /// Between two ticks: all that Lua holds, in pages that are shared with an older copy, or null. Compiled code is
   /// forgotten, since it lies elsewhere; it comes again as it is needed. [sim]
   void copy_heap(PageStore& pages, const PageStore::Image* before, PageStore::Image& out);
@@ -91,6 +115,9 @@ class Vm {
   void keep_entries();
   bool call(int arguments, int results);
   void push_entry(const char* name);
+  std::string text_of(const char* entry);
+  std::uint64_t count_of(const char* entry);
+  void call_with(const char* entry, double number);
   bool push_behavior(int functions, std::int32_t number);
   BehaviorFault guarded_behavior(int arguments, int results);
 

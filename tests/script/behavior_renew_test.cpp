@@ -95,7 +95,7 @@ TEST_F(Renewed, StateThatCantBeKeptBeginsAnew) {
   EXPECT_EQ(take_printed(), (Lines{"start", "nil"}));
   EXPECT_EQ(stage.logged().back(),
             "behavior 'ball/it' begins anew: state.f is a function; state holds numbers, text, true and false, vec3, "
-            "quat, and tables of them");
+            "quat, timers, and tables of them");
 }
 
 TEST_F(Renewed, ASuspendedOneTriesAgain) {

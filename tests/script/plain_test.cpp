@@ -18,7 +18,7 @@ std::string state_of(const std::string& start) {
   return state ? *state : state.error();
 }
 
-constexpr const char* kOnly = "; state holds numbers, text, true and false, vec3, quat, and tables of them";
+constexpr const char* kOnly = "; state holds numbers, text, true and false, vec3, quat, timers, and tables of them";
 
 TEST(PlainData, WhatIsNoneNamesTheKey) {
   EXPECT_EQ(state_of("s.f = print"), std::string("state.f is a function") + kOnly);

@@ -131,13 +131,13 @@ function sim:on_step(f) end
 ---@param f fun(part: part, other: part, impulse: number, position: vec3)
 function sim:on_contact(f) end
 
----Whenever the time passes a multiple of so many seconds.
+---Whenever the time passes a multiple of so many seconds. Set by a callback, it goes on after a save as it is.
 ---@param seconds number
 ---@param f fun()
 ---@return timer
 function sim:every(seconds, f) end
 
----Once, so many seconds from now.
+---Once, so many seconds from now. Set by a callback, it goes on after a save; at the top level, it keeps its time.
 ---@param seconds number
 ---@param f fun()
 ---@return timer

@@ -20,7 +20,7 @@ ffi.cdef [[
   typedef struct gear { const int32_t slot_, generation_; } gear;
   typedef struct list { const int32_t slot_, generation_, kind_; } list;
   typedef struct link { const int32_t slot_, generation_, number_; } link;
-  typedef struct timer { const int32_t number_; } timer;
+  typedef struct timer { const int32_t number_, run_; } timer;
   typedef struct rng { const int32_t slot_, generation_; } rng;
   typedef struct address { const double ip_; const int32_t port_; } address;
 ]]

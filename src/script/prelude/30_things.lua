@@ -16,6 +16,16 @@ for i, name in ipairs { "sim", "body", "part", "joint", "motor", "shape", "visua
   class.number = i - 1
   classes[name], by_ctype[tonumber(class.ctype)] = class, class
 end
+-- The table of a living handle's node; a behavior's or a group's is that of its type.
+local handles = {}
+local function each_class_met(f)
+  for slot, h in pairs(handles) do
+    if slot < view.slot_count and view.slots[slot].generation == h.generation_ then
+      f(by_ctype[tonumber(ffi.typeof(h))], view.slots[slot].table)
+    end
+  end
+end
+
 -- each store numbers the tables of its classes by itself
 function P.number_classes()
   for table in pairs(by_table) do by_table[table] = nil end
@@ -23,14 +33,29 @@ function P.number_classes()
     class.table = api.class_table(ctx, class.number)
     by_table[class.table] = class
   end
+  each_class_met(function(class, number)
+    if class.number then return end
+    class.table = number
+    by_table[number] = by_table[number] or class
+  end)
 end
 P.number_classes()
+
+-- the types of behaviors may have other parameters now: a class follows the table of its handles
+function P.renew_classes()
+  each_class_met(function(class, number)
+    if class.number or class.table == number then return end
+    if by_table[class.table] == class then by_table[class.table] = nil end
+    by_table[number] = by_table[number] or class
+    class.table = number
+    P.renew_class(class)
+  end)
+end
 -- what errors call those of which there is one
 classes.sim.only, classes.visuals.only = "sim", "visuals"
 classes.camera.only, classes.look.only = "visuals.camera", "visuals.look"
 
 -- handles: one for each slot, so that a thing is always the same key of a table; names stay for the gone ones
-local handles = {}
 local names = setmetatable({}, { __mode = "k" })
 local owners = setmetatable({}, { __mode = "k" })
 P.names, P.handles = names, handles
@@ -284,13 +309,18 @@ local function not_writable(h, class, key)
 end
 P.not_writable = not_writable
 
+-- a method is told from an unknown name: compiled code finds what is there for less than what is not
+function P.fill_members(class)
+  for key in pairs(class.methods) do class.members[key] = false end
+  for key, get in pairs(class.getters) do class.members[key] = get end
+end
+
 -- gives a class's handles their behaviour, once all of its members are known
 function P.finish(class)
   local getters, setters, methods, ctype = class.getters, class.setters, class.methods, class.ctype
-  -- a method is told from an unknown name: compiled code finds what is there for less than what is not
   local members = {}
-  for key in pairs(methods) do members[key] = false end
-  for key, get in pairs(getters) do members[key] = get end
+  class.members = members
+  P.fill_members(class)
   ffi.metatype(ctype, {
     __index = function(h, key)
       local get = members[key]

@@ -20,12 +20,7 @@ end
 
 local function list(kind) return function(h) return (P.list_of(h, kind)) end end
 
--- the class of a table's number: of a type's instances, or of its groups
-function P.make_class(number)
-  api.table_name(ctx, number)
-  local class = { name = P.text(), table = number, getters = {}, setters = {}, methods = {}, rows = {},
-    ctype = ffi.typeof("struct { const int32_t slot_, generation_; }") }
-  P.add_class(class)
+local function derive_class(class)
   P.derive(class)
   P.common(class)
   class.getters.type = type_name
@@ -34,8 +29,26 @@ function P.make_class(number)
     class.getters.error = error_text
     class.getters.parts, class.getters.joints, class.getters.motors = list(parts), list(joints), list(motors)
   end
+end
+
+-- the class of a table's number: of a type's instances, or of its groups
+function P.make_class(number)
+  api.table_name(ctx, number)
+  local class = { name = P.text(), table = number, getters = {}, setters = {}, methods = {}, rows = {},
+    ctype = ffi.typeof("struct { const int32_t slot_, generation_; }") }
+  P.add_class(class)
+  derive_class(class)
   P.finish(class)
   return class
+end
+
+-- the members of a class whose table is another one now
+function P.renew_class(class)
+  for _, members in ipairs { class.getters, class.setters, class.methods, class.rows, class.members } do
+    for key in pairs(members) do members[key] = nil end
+  end
+  derive_class(class)
+  P.fill_members(class)
 end
 
 -- what is meant: a name, a pattern, "all", a thing, a list of these; gathered word by word

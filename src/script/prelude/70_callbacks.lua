@@ -12,8 +12,21 @@ function P.log(list)
   if #journal > 0 and journal[1].call ~= answer.call then journal = {} end
   journal[#journal + 1] = { call = answer.call, list = list, count = #list }
 end
-local function add(list, entry)
+-- An earlier run: its file was saved since, and only the timers of its callbacks go on.
+local earlier = false
+
+-- true: the run is an earlier one, where nothing is registered any more (reported once for each line)
+function P.registers_nothing(what)
+  if earlier then
+    P.warn_once(what .. " is ignored: this function belongs to a run before the last save, of which only timers go on")
+  end
+  return earlier
+end
+
+local function add(list, entry, what)
+  if P.registers_nothing(what) then return end
   P.log(list)
+  entry.in_callback = answer.top_level == 0
   list[#list + 1] = entry
 end
 P.on_failure[#P.on_failure + 1] = function()
@@ -48,15 +61,15 @@ local starts, steps, contacts, timers = {}, {}, {}, {}
 
 method("on_start", function(_, f)
   P.want_function(f, "sim:on_start")
-  add(starts, { f = f })
+  add(starts, { f = f }, "sim:on_start")
 end)
 method("on_step", function(_, f)
   P.want_function(f, "sim:on_step")
-  add(steps, { f = f })
+  add(steps, { f = f }, "sim:on_step")
 end)
 method("on_contact", function(_, f)
   P.want_function(f, "sim:on_contact")
-  add(contacts, { f = f })
+  add(contacts, { f = f }, "sim:on_contact")
 end)
 
 -- Timers. A sum of time steps misses a multiple by a few bits, so a nanosecond counts as reached.
@@ -64,14 +77,17 @@ local kSlack = 1e-9
 local T = ffi.typeof("timer")
 local timer_of = setmetatable({}, { __mode = "v" })
 local timer_count = 0
+local afters = {}  -- the top level's sim:after, in their order, the ended ones too: the next run takes them over
 
 local function now() return P.sim.time end
 
 local function add_timer(f, entry)
   timer_count = timer_count + 1
-  entry.f, entry.handle = f, T(timer_count)
+  entry.f, entry.handle = f, T(timer_count, 0)
+  entry.in_callback = answer.top_level == 0
   timer_of[timer_count] = entry
-  add(timers, entry)
+  P.log(timers)
+  timers[#timers + 1] = entry
   return entry.handle
 end
 
@@ -91,7 +107,10 @@ method("after", function(_, seconds, f)
     fail("sim:after takes seconds from 0 on, not %s", tostring(seconds))
   end
   P.want_function(f, "sim:after")
-  return add_timer(f, { due = now() + seconds })
+  local entry = { due = now() + seconds, seconds = seconds }
+  local handle = add_timer(f, entry)
+  if not entry.in_callback then afters[#afters + 1] = entry end
+  return handle
 end)
 method("at", function(_, time, f)
   P.want_number(time, "sim:at")
@@ -110,10 +129,90 @@ function P.timers_moved(time)
   end
 end
 
+-- Top-level timers of sim:after as text, for the run that takes this one's place: delay, time, whether it has ended. One
+-- that failed has no time: it counts again, since the save may have corrected it.
+function P.entry.afters()
+  local list = {}
+  for i, entry in ipairs(afters) do
+    list[i] = { entry.seconds, not entry.failed and entry.due, entry.off == true and not entry.failed }
+  end
+  return P.plain_text(list, "afters", function() end)
+end
+
+-- The first with a delay goes on as the first with that delay of the run before, and so on: at the same time, and not
+-- again if it has acted or was cancelled. Others count from this run.
+function P.entry.take_afters(text)
+  local of_delay = {}
+  for _, before in ipairs(P.plain_value(text) or {}) do
+    local queue = of_delay[before[1]] or { at = 1 }
+    of_delay[before[1]] = queue
+    queue[#queue + 1] = before
+  end
+  for _, entry in ipairs(afters) do
+    local queue = of_delay[entry.seconds]
+    local before = queue and queue[queue.at]
+    if before then
+      queue.at = queue.at + 1
+      entry.due, entry.off = before[2] or entry.due, before[3] or nil
+    end
+  end
+end
+
+-- how many timers of callbacks wait, and how many of them repeat
+function P.entry.callback_timers()
+  local count, repeating = 0, 0
+  for _, entry in ipairs(timers) do
+    if not entry.off and entry.in_callback then
+      count = count + 1
+      if entry.period then repeating = repeating + 1 end
+    end
+  end
+  return count, repeating
+end
+
+local function clear(list)
+  for i = #list, 1, -1 do list[i] = nil end
+end
+
+-- The run becomes an earlier one: all ends that the top level has registered, and whatever is no timer. The answer: how
+-- many handlers that callbacks had registered end with it.
+function P.entry.become_earlier()
+  earlier = true
+  local lost = P.end_handlers()
+  for _, list in ipairs { steps, contacts } do
+    for _, entry in ipairs(list) do
+      if entry.in_callback and not entry.off then lost = lost + 1 end
+    end
+    clear(list)
+  end
+  clear(starts)
+  clear(afters)
+  local kept = {}
+  for _, entry in ipairs(timers) do
+    if not entry.off and entry.in_callback then kept[#kept + 1] = entry end
+  end
+  clear(timers)
+  for i, entry in ipairs(kept) do timers[i] = entry end
+  return lost
+end
+
+-- Timers in `state` are known to all runs, by the number of the run that set them; 0 in a handle is the run itself.
+P.run_number = -1
+function P.entry.number_run(number) P.run_number = number end
+function P.timer(number, run) return T(number, run == P.run_number and 0 or run) end
+function P.timer_text(handle) return handle.number_, handle.run_ == 0 and P.run_number or handle.run_ end
+
+-- of an earlier run, by another one
+function P.entry.cancel_timer(number)
+  local entry = timer_of[number]
+  if entry then entry.off = true end
+end
+
 local timer_methods = {
   cancel = function(handle)
     if not istype(T, handle) then fail("cancel is a method of a timer: write timer:cancel()") end
     P.needs_callback("timer:cancel")
+    if handle.run_ ~= 0 then return api.cancel_timer(ctx, handle.run_, handle.number_) end
     local entry = timer_of[handle.number_]
     if not entry or entry.off then return end
     P.log(timers)
@@ -129,25 +228,26 @@ ffi.metatype(T, {
   __tostring = function() return "timer" end,
 })
 
+local function is_due(entry, time)
+  if entry.off then return false end
+  if entry.period then return beats(entry, time) > entry.beat end
+  return time + kSlack >= entry.due
+end
+
 local function run_timers()
   local n = #timers
   if n == 0 then return end
   local time = now()
   for i = 1, n do
     local entry = timers[i]
-    local due = false
-    if entry.off then
-      due = false
-    elseif entry.period then
-      local beat = beats(entry, time)
-      due = beat > entry.beat
-      entry.beat = beat
-    else
-      due = time + kSlack >= entry.due
-    end
+    local due = is_due(entry, time)
+    if entry.period and not entry.off then entry.beat = beats(entry, time) end
     if due then
       local ok = guarded(entry.f)
-      if not ok then api.report(ctx) end
+      if not ok then
+        entry.failed = true
+        api.report(ctx)
+      end
       if not (ok and entry.period) then entry.off = true end
     end
   end
@@ -187,4 +287,17 @@ function P.entry.tick(dt)
   run_timers()
   run_contacts()
   call_all(steps, dt)
+end
+
+-- of an earlier run: whether a timer is due; then the timers, and how many are left
+function P.entry.timers_due()
+  local time = now()
+  for _, entry in ipairs(timers) do
+    if is_due(entry, time) then return true end
+  end
+  return false
+end
+function P.entry.run_timers()
+  run_timers()
+  return #timers
 end

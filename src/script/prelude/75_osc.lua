@@ -47,9 +47,20 @@ function osc.on(self, pattern, f)
   check(self, "on")
   want_address(pattern, "osc:on")
   P.want_function(f, "osc:on")
+  if P.registers_nothing("osc:on") then return end
   P.log(handlers)
-  handlers[#handlers + 1] = { pattern = pattern, f = f }
+  handlers[#handlers + 1] = { pattern = pattern, f = f, in_callback = answer.top_level == 0 }
   api.osc_handlers(ctx, #handlers)
+end
+-- all of them end; the answer: how many of them callbacks had registered
+function P.end_handlers()
+  local lost = 0
+  for i = #handlers, 1, -1 do
+    if handlers[i].in_callback then lost = lost + 1 end
+    handlers[i] = nil
+  end
+  api.osc_handlers(ctx, 0)
+  return lost
 end
 function osc.send(self, address, ...)
   check(self, "send")

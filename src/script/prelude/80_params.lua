@@ -125,6 +125,19 @@ function P.params_moved()
   node.slot_, node.generation_ = answer.slot, answer.generation
 end
 
+-- Of an earlier run: the parameters are those of the run that plays now.
+function P.params_renewed()
+  if not node then return end
+  local there = api.params_node(ctx) == 0
+  node.slot_, node.generation_ = there and answer.slot or -1, there and answer.generation or 0
+  if there and answer.count == class.table then return end
+  for _, members in ipairs { class.getters, class.setters, class.methods, class.rows } do
+    for key in pairs(members) do members[key] = nil end
+  end
+  class.table = there and answer.count or -1
+  if there then P.derive(class) end
+end
+
 function P.parameter_names() return class and class.getters or {} end
 
 local function no_parameter(key)

@@ -1,11 +1,12 @@
 -- Plain data as text and back: what `state` may hold, on its way from one Lua state to the next. Numbers, text, true and
--- false, vec3, quat, three booleans, and tables of them; equal values give equal texts.
+-- false, vec3, quat, three booleans, timers, and tables of them; equal values give equal texts.
 local P = ...
 local ffi, V, Q, F, istype, describe = P.ffi, P.V, P.Q, P.F, P.ffi.istype, P.describe
+local T = ffi.typeof("timer")
 local format, byte, sub, find = string.format, string.byte, string.sub, string.find
 
 local kDeepest = 100
-P.plain_kinds = "state holds numbers, text, true and false, vec3, quat, and tables of them"
+P.plain_kinds = "state holds numbers, text, true and false, vec3, quat, timers, and tables of them"
 
 -- numbers go to the bit
 local buffer = ffi.new("double[4]")
@@ -72,6 +73,9 @@ function put(out, path, value, refuse, above, depth)
     out[#out + 1] = "q" .. bytes(value.x, value.y, value.z, value.w)
   elseif istype(F, value) then
     out[#out + 1] = "b" .. bytes(value.x and 1 or 0, value.y and 1 or 0, value.z and 1 or 0)
+  elseif istype(T, value) then
+    local number, run = P.timer_text(value)
+    out[#out + 1] = "T" .. bytes(number, run, 0)
   else
     refuse(path, "is " .. describe(value))
   end
@@ -118,6 +122,7 @@ function take(text, at)
   local x, y, z = buffer[0], buffer[1], buffer[2]
   if kind == "n" then return x, at end
   if kind == "v" then return V(x, y, z), at end
+  if kind == "T" then return P.timer(x, y), at end
   if kind == "q" then return Q(x, y, z, buffer[3]), at end
   return F(x ~= 0, y ~= 0, z ~= 0), at
 end

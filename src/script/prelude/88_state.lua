@@ -57,3 +57,30 @@ function P.entry.take_state(text)
   for key in next, written do live[key] = rawget(now, key) end
   fill(now, live)
 end
+
+local function same(a, b)
+  if type(a) ~= type(b) then return false end
+  if type(a) == "cdata" then return text_of(a, "state") == text_of(b, "state") end
+  return a == b or a ~= a and b ~= b
+end
+
+-- brings the difference between two states into a table that is like the first; what is no plain data stays
+local function change(target, before, after)
+  for key in next, before do
+    if after[key] == nil then target[key] = nil end
+  end
+  for key, value in next, after do
+    local was, now = before[key], rawget(target, key)
+    if type(value) == "table" and type(was) == "table" and type(now) == "table" then
+      change(now, was, value)
+    elseif not same(was, value) then
+      rawset(target, key, value)
+    end
+  end
+end
+
+-- Runs of one scene share `state`: the changes between two texts of it that another run has made.
+function P.entry.change_state(before, after)
+  local now = state_now()
+  if now then change(now, table_of(before), table_of(after)) end
+end

@@ -5,9 +5,8 @@ local ffi, api, ctx = P.ffi, P.api, P.ctx
 
 local gathered, thing_count, pointers = {}, 0, nil
 
--- off the simulation thread, after a good run: where each handle keeps its slot and generation
-function P.entry.prepare()
-  P.find_written()
+-- where each handle keeps its slot and generation
+local function gather()
   gathered = {}
   for _, handle in pairs(P.handles) do gathered[#gathered + 1] = handle end
   thing_count = #gathered
@@ -17,9 +16,16 @@ function P.entry.prepare()
   for i, handle in ipairs(gathered) do pointers[i - 1] = ffi.cast("int32_t*", handle) end
   api.handles(ctx, pointers, #gathered)
 end
+P.entry.gather = gather
 
--- the ids are others now; `timers_at`: when the show's timers were looked at last, nil when they never were
-function P.entry.become_live(timers_at)
+-- off the simulation thread, after a good run
+function P.entry.prepare()
+  P.find_written()
+  gather()
+end
+
+-- handles by their slots, which are others now
+local function index_handles()
   local handles = P.handles
   for slot in pairs(handles) do handles[slot] = nil end
   for i = 1, thing_count do
@@ -27,9 +33,23 @@ function P.entry.become_live(timers_at)
     if handle.slot_ >= 0 then handles[handle.slot_] = handle end
   end
   gathered, pointers = {}, nil
+end
+
+-- the ids are others now; `timers_at`: when the show's timers were looked at last, nil when they never were
+function P.entry.become_live(timers_at)
+  index_handles()
   P.number_classes()
   P.lists_moved()
   P.relations_moved()
   P.params_moved()
   if timers_at then P.timers_moved(timers_at) end
+end
+
+-- Of an earlier run: another run has become the show, and things were made again.
+function P.entry.things_moved()
+  index_handles()
+  P.renew_classes()
+  P.lists_moved()
+  P.relations_moved()
+  P.params_renewed()
 end

@@ -1,0 +1,110 @@
+// Calls that are stopped, in takes and rewinds: they are not made again, and whatever the scripts do, a replay ends.
+#include "engine/taken.h"
+
+namespace limber::engine_test {
+namespace {
+
+// "/trap" computes without an end when it is called for the first time: a stopped call leaves `hits` at 1
+constexpr const char* kTrap = R"(
+sim.timestep = 0.02
+local ball = sim:add_body("ball"):add_part("p", sim:add_sphere_shape("s", 0.1), { position = vec3(0, 0, 9) })
+local hits = 0
+osc:on("/push", function(x) ball:apply_impulse(vec3(x, rng:uniform(0, 0.1), 0)) end)
+osc:on("/trap", function()
+  hits = hits + 1
+  ball:apply_impulse(vec3(0, hits, 0))
+  while hits == 1 do end
+end)
+)";
+
+struct Trapped {
+  ShowFolder folder;
+  EngineOptions options;
+
+  Trapped() {
+    log_to_stderr(false);
+    folder.write("scripts/scene.lua", kTrap);
+    options = fast_options(folder.path("scripts/scene.lua"));
+    options.scene_options.limits.call_ms = 5 * kBudgetScale;
+    options.scene_options.limits.again_ms = 20 * kBudgetScale;
+    options.record = folder.path("takes/trap.take");
+    std::filesystem::create_directories(folder.path("takes"));
+  }
+  std::uint64_t end(Show& show) const {
+    show.engine.end_take();
+    const std::uint64_t hash = show.engine.state_hash();
+    show.engine.finish_saving();
+    return hash;
+  }
+};
+
+TEST(TakeStops, AStoppedCallStaysStoppedWhenAReplayRewinds) {
+  Trapped trapped;
+  std::uint64_t hash = 0;
+  {
+    Show show(trapped.options);
+    show.ticks(60);
+    evaluate(show, "while true do end");
+    show.ticks(5);
+    // in the tick of a rewind, before and after it
+    evaluate(show, "while true do end");
+    show.send("/transport/rewind_ticks", 8);
+    show.send("/push", 1);
+    evaluate(show, "while true do end");
+    show.send("/push", 1);
+    show.ticks(3);
+    show.send("/transport/rewind_ticks", 6);
+    show.ticks(10);
+    hash = trapped.end(show);
+  }
+  const Replayed again = replay_take(trapped.options.record);
+  EXPECT_EQ(again.error, "");
+  EXPECT_FALSE(again.verdict.parted.has_value()) << text_of(again.verdict);
+  EXPECT_EQ(again.hash, hash);
+}
+
+TEST(TakeStops, ARewindEndsThoughACallThatItRepeatsDoesNot) {
+  Trapped trapped;
+  Show show(trapped.options);
+  show.ticks(60);
+  show.send("/trap");
+  show.ticks(3);
+  show.send("/trap");
+  show.ticks(3);
+  const std::uint64_t seen = log_newest();
+  show.send("/transport/rewind_ticks", 1);
+  show.engine.idle();
+  EXPECT_EQ(show.engine.world().tick(), 64u) << "in tick 63 the second call is the first";
+  bool reported = false;
+  for (const LogLine& line : log_since(seen)) reported = reported || line.text.find("rewind: a script") == 0;
+  EXPECT_TRUE(reported);
+  show.ticks(5);
+  EXPECT_EQ(show.engine.world().tick(), 69u);
+}
+
+// what a stopped call had set in Lua's variables is not in the take: the second call of "/trap" is the first there
+TEST(TakeStops, AShowThatPlaysATakeWhoseCallsDifferGoesOn) {
+  Trapped trapped;
+  {
+    Show show(trapped.options);
+    show.ticks(10);
+    show.send("/trap");
+    show.ticks(3);
+    show.send("/trap");
+    show.ticks(200);
+    (void)trapped.end(show);
+  }
+  EngineOptions options = trapped.options;
+  options.record.clear();
+  options.fast = false;
+  Show show(options);
+  ASSERT_TRUE(begin_take(show, trapped.options.record).ok());
+  for (int i = 0; i < 100 && show.read("/take/plays") != 0; i++) show.ticks(1);
+  EXPECT_EQ(show.read("/take/plays"), 0) << "it ends where the runs part";
+  show.send("/push", 1);
+  show.ticks(1);
+  EXPECT_TRUE(show.engine.replays() == false);
+}
+
+}  // namespace
+}  // namespace limber::engine_test
