@@ -1,0 +1,30 @@
+// Soaks that are recorded and replayed: many seeds, and one of ten minutes. A list of actions that diverges is shrunk.
+// LIMBER_SOAK_SEED and LIMBER_SOAK_COUNT choose other seeds.
+#include <cstdlib>
+
+#include "engine/soak.h"
+
+namespace limber::engine_test {
+namespace {
+
+std::uint64_t number_of(const char* variable, std::uint64_t otherwise) {
+  const char* const text = std::getenv(variable);
+  return text == nullptr ? otherwise : std::strtoull(text, nullptr, 10);
+}
+
+TEST(LongTakeSoak, ManySeedsComeAgainToTheBit) {
+  const std::uint64_t first = number_of("LIMBER_SOAK_SEED", 100);
+  const std::uint64_t count = number_of("LIMBER_SOAK_COUNT", 40);
+  for (std::uint64_t seed = first; seed < first + count; seed++) {
+    expect_soaks(static_cast<int>(number_of("LIMBER_SOAK_TICKS", 600)), seed);
+    if (HasFailure()) return;
+  }
+}
+
+// in parts of a minute: where one diverges, its list is soon shrunk
+TEST(LongTakeSoak, TenMinutesComeAgainToTheBit) {
+  for (std::uint64_t seed = 1; seed <= 10; seed++) expect_soaks(3600, seed);
+}
+
+}  // namespace
+}  // namespace limber::engine_test
