@@ -3,6 +3,7 @@
 #pragma once
 
 #include <algorithm>
+#include <cstdio>
 #include <functional>
 #include <iterator>
 #include <string>
@@ -219,6 +220,8 @@ inline void expect_soaks(int ticks, std::uint64_t seed) {
   const std::vector<SoakAction> actions = soak_actions(ticks, seed);
   const std::string fault = soak(actions, ticks).fault;
   if (fault.empty()) return;
+  fmt::print("seed {}, {} actions: {}\n", seed, actions.size(), fault);  // shrinking takes its time
+  std::fflush(stdout);
   const auto fails = [&](const std::vector<SoakAction>& some) { return !soak(some, ticks).fault.empty(); };
   const std::vector<SoakAction> few = shrink(actions, fails);
   ADD_FAILURE() << "seed " << seed << ", " << ticks << " ticks: " << fault << "\nthe fewest actions that fail:\n"
