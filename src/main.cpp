@@ -1,4 +1,8 @@
 // The program.
 #include "app/options.h"
+#include "base/system/standard_output.h"
 
-int main(int argc, char** argv) { return limber::run_command_line(argc, argv); }
+int main(int argc, char** argv) {
+  limber::system::prepare_standard_descriptors();
+  return limber::run_command_line(argc, argv);
+}

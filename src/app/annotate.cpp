@@ -1,7 +1,6 @@
 // A scene that never runs tells its names; the tables tell the rest.
 #include "app/annotate.h"
 
-#include <cstdio>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
@@ -9,6 +8,7 @@
 #include <fmt/format.h>
 
 #include "app/exit_code.h"
+#include "base/output.h"
 #include "base/text.h"
 #include "engine/engine.h"
 #include "script/annotate.h"
@@ -45,7 +45,7 @@ std::string annotations_text() {
 int annotate_command(const std::string& file) {
   const std::string text = annotations_text();
   if (file.empty()) {
-    fmt::print("{}", text);
+    print_result("{}", text);
     return kFine;
   }
   std::error_code ignored;

@@ -2,7 +2,6 @@
 #include "app/bench.h"
 
 #include <algorithm>
-#include <cstdio>
 #include <thread>
 
 #include <fmt/format.h>
@@ -23,6 +22,7 @@
 #include "app/bench_threads.h"
 #include "app/exit_code.h"
 #include "base/build_info.h"
+#include "base/output.h"
 #include "base/system/process.h"
 #include "base/text.h"
 
@@ -173,24 +173,20 @@ int bench_command(const BenchOptions& options) {
     for (const BenchScene& scene : bench_scenes()) chosen.push_back(&scene);
   }
   Json all = machine();
-  if (!options.json) fmt::print("{}", bench_text(all));
+  if (!options.json) print_result("{}", bench_text(all));
   all["scenes"] = Json::array();
   for (const BenchScene* scene : chosen) {
-    if (!options.json) {
-      fmt::print("{}: {}\n", scene->name, scene->doc);
-      std::fflush(stdout);
-    }
+    if (!options.json && !print_result("{}: {}\n", scene->name, scene->doc)) break;
     Json figures = {{"scene", std::string(scene->name)}};
     figures.update(scene->run(options));
     if (!options.json) {
       figures.erase("scene");
-      fmt::print("{}", bench_text(figures));
-      std::fflush(stdout);
+      print_result("{}", bench_text(figures));
     } else {
       all["scenes"].push_back(std::move(figures));
     }
   }
-  if (options.json) fmt::print("{}\n", all.dump(2));
+  if (options.json) print_result("{}\n", all.dump(2));
   return kFine;
 }
 

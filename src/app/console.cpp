@@ -8,6 +8,7 @@
 #include "app/console_session.h"
 #include "app/console_terminal.h"
 #include "app/exit_code.h"
+#include "base/output.h"
 #include "base/system/file.h"
 #include "base/system/process.h"
 #include "base/system/wait.h"
@@ -81,6 +82,7 @@ int evaluate_lines(ConsoleSession& session) {
     chunk += line;
     if (chunk.empty()) continue;
     const Answer answer = session.evaluate(chunk);
+    if (result_error() != 0) return kFine;  // its answers go nowhere
     if (answer == Answer::ended) return fail(kInput, "console: limber ended before it answered");
     if (answer == Answer::incomplete) {
       chunk += '\n';

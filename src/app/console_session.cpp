@@ -1,10 +1,11 @@
 // Asking, waiting for the answer, showing.
 #include "app/console_session.h"
 
-#include <cstdio>
 #include <utility>
 
 #include <fmt/format.h>
+
+#include "base/output.h"
 
 namespace limber {
 
@@ -59,28 +60,31 @@ void ConsoleSession::show_news() {
 void ConsoleSession::show(const ConsoleLine& line) const {
   switch (line.kind) {
     case Kind::value:
-      fmt::print("{}\n", line.text);
+      print_result("{}\n", line.text);
       break;
     case Kind::print:
-      fmt::print(line.id == asked_ ? stdout : stderr, "{}\n", line.text);
+      if (line.id == asked_) {
+        print_result("{}\n", line.text);
+      } else {
+        write_line(OutputTo::error, line.text);
+      }
       break;
     case Kind::error:
     case Kind::refused:
-      fmt::print(stderr, "{}\n", line.text);
+      write_line(OutputTo::error, line.text);
       break;
     case Kind::warning:
-      fmt::print(stderr, "limber: warning: {}\n", line.text);
+      print_notice("warning: {}", line.text);
       break;
     case Kind::fault:
-      fmt::print(stderr, "limber: error: {}\n", line.text);
+      print_notice("error: {}", line.text);
       break;
     case Kind::missed:
-      fmt::print(stderr, "({} lines are left out here: too much was said)\n", line.count);
+      write_line(OutputTo::error, fmt::format("({} lines are left out here: too much was said)", line.count));
       break;
     default:
       return;  // nothing to see
   }
-  std::fflush(stdout);
 }
 
 }  // namespace limber

@@ -16,6 +16,7 @@
 #include "app/console_history.h"
 #include "app/console_session.h"
 #include "app/exit_code.h"
+#include "base/output.h"
 #include "base/system/file.h"
 #include "base/system/process.h"
 #include "base/system/signals.h"
@@ -136,8 +137,7 @@ int Terminal::next_key(wchar_t* key) {
       continue;
     }
     if (waiting[1].ready && session_.has_news()) {
-      fmt::print("\r\x1b[K");
-      std::fflush(stdout);
+      write_result("\r\x1b[K");
       session_.show_news();
       el_set(edit_, EL_REFRESH);
     }
@@ -188,10 +188,10 @@ void Terminal::offer(const std::vector<std::string>& words) const {
   for (const std::string& each : words) widest = std::max(widest, each.size());
   const std::size_t columns = std::max<std::size_t>(1, kColumns / (widest + 2));
   for (std::size_t i = 0; i < words.size(); i++) {
-    if (i % columns == 0) fmt::print("\n");
-    fmt::print("{:<{}}", words[i], widest + 2);
+    if (i % columns == 0) write_result("\n");
+    print_result("{:<{}}", words[i], widest + 2);
   }
-  fmt::print("\n");
+  write_result("\n");
 }
 
 void Terminal::remember(const std::string& line) {
@@ -205,7 +205,7 @@ int Terminal::run() {
     int count = 0;
     const char* typed = el_gets(edit_, &count);
     if (std::exchange(cancelled_, false)) {
-      fmt::print("^C\n");
+      write_result("^C\n");
       pending_.clear();
       continue;
     }
@@ -220,17 +220,17 @@ int Terminal::run() {
       continue;
     }
     pending_.clear();
-    if (answer == ConsoleSession::Answer::left) fmt::print(" (it may still run; its answer is not awaited)\n");
+    if (answer == ConsoleSession::Answer::left) write_result(" (it may still run; its answer is not awaited)\n");
   }
-  fmt::print("{}\n", session_.ended() ? "\nlimber has ended" : "");
+  print_result("{}\n", session_.ended() ? "\nlimber has ended" : "");
   return kFine;
 }
 
 }  // namespace
 
 int console_terminal(ConsoleLink link, const ConsoleLine& hello) {
-  fmt::print("limber {}, number {}, plays {}. Lua; Tab completes, Ctrl+C gives a line up, Ctrl+D leaves.\n",
-             hello.version, hello.pid, hello.text);
+  print_result("limber {}, number {}, plays {}. Lua; Tab completes, Ctrl+C gives a line up, Ctrl+D leaves.\n",
+               hello.version, hello.pid, hello.text);
   return Terminal(std::move(link)).run();
 }
 

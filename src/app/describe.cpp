@@ -10,6 +10,7 @@
 
 #include "app/exit_code.h"
 #include "app/paths.h"
+#include "base/output.h"
 #include "base/text.h"
 #include "engine/engine.h"
 #include "params/row_text.h"
@@ -136,7 +137,7 @@ int describe_command(const std::string& scene, bool json) {
     out = as_text(each);
   }
   if (!done) return fail(kInput, done.error());
-  fmt::print("{}", out);
+  print_result("{}", out);
   return kFine;
 }
 

@@ -17,6 +17,7 @@
 #include "app/window.h"
 #include "base/build_info.h"
 #include "base/fixed_math.h"
+#include "base/output.h"
 #include "base/system/file.h"
 #include "base/system/process.h"
 #include "base/system/udp_socket.h"
@@ -33,7 +34,7 @@ namespace limber {
 namespace {
 
 void finding(std::string_view mark, std::string_view what, std::string_view text) {
-  fmt::print("{:4} {:10} {}\n", mark, what, text);
+  print_result("{:4} {:10} {}\n", mark, what, text);
 }
 
 std::string system_name() {

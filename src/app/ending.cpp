@@ -1,11 +1,10 @@
 // A thread that looks about itself every twenty milliseconds.
 #include "app/ending.h"
 
-#include <cstdio>
-#include <cstdlib>
 #include <utility>
 
 #include "app/exit_code.h"
+#include "base/output.h"
 #include "base/system/signals.h"
 
 namespace limber {
@@ -29,10 +28,13 @@ void Ending::watch() {
   for (int looks = 0, more = 0; !done_.load();) {
     const system::Signal signal = system::wait_for_signal(kLook);
     if (done_.load()) return;
-    asked = asked || signal == system::Signal::end;
+    if (signal == system::Signal::end) {
+      asked = true;
+      hurry_output();
+    }
     if (asked && ++more > kLooksMore) {
-      std::fputs("limber: ended before all files were written\n", stderr);
-      std::_Exit(kInput);
+      print_notice("ended before all files were written");
+      end_program(kInput);
     }
     if (whole_.load() && ++looks > kMostLooks) late_();
   }

@@ -13,4 +13,10 @@ inline constexpr int kMachine = 3;  ///< The machine is: a port in use, a folder
 /// Says on stderr what went wrong, unprintable bytes escaped, and gives the code back.
 int fail(int code, std::string_view text);
 
+/// Writes all text that is queued. Returns the code, or 3 where a result could not be written to stdout; a reader that
+/// has closed it is no failure. [main]
+int finish_command(int code);
+/// The same, and ends the program without destroying anything. [any]
+[[noreturn]] void end_program(int code);
+
 }  // namespace limber

@@ -14,6 +14,7 @@
 #include "app/motion_source.h"
 #include "app/paths.h"
 #include "app/progress.h"
+#include "base/output.h"
 #include "base/system/signals.h"
 #include "base/text.h"
 #include "engine/take_reader.h"
@@ -148,10 +149,10 @@ Ended write_frames(const ExportCommand& command, std::uint64_t ticks, Engine& en
 
 int tell_end(const Plan& plan, const ExportCommand& command, const Ended& end, const MotionSource& source,
              const Engine& engine) {
-  fmt::print(stderr, "limber: {}: {} frames of {} bod{}, {} a second\n", printable(plan.output), end.frames,
-             source.bodies(), source.bodies() == 1 ? "y" : "ies", number_text(command.rate));
+  print_notice("{}: {} frames of {} bod{}, {} a second", printable(plan.output), end.frames, source.bodies(),
+               source.bodies() == 1 ? "y" : "ies", number_text(command.rate));
   const TakeVerdict verdict = engine.verdict();
-  fmt::print(stderr, "limber: {}\n", text_of(verdict));
+  print_notice("{}", text_of(verdict));
   return verdict.parted || !verdict.damage.empty() ? kInput : kFine;
 }
 
@@ -176,7 +177,7 @@ int export_take(const ExportCommand& command, const std::function<bool()>& cance
   const Ended end = write_frames(command, *ticks, engine, moments, source, **writer);
   if (!end.written) return fail(kMachine, end.written.error());
   if (end.cancelled) {
-    fmt::print(stderr, "limber: cancelled; there is no {}\n", printable(plan->output));
+    print_notice("cancelled; there is no {}", printable(plan->output));
     return kInput;
   }
   if (end.frames == 0)
@@ -191,6 +192,7 @@ int export_take(const ExportCommand& command, const std::function<bool()>& cance
 
 int export_command(const ExportCommand& command) {
   system::block_signals();
+  start_output(OutputMode::batch);
   return export_take(command, system::signal_came);
 }
 

@@ -199,11 +199,11 @@ int inspect_command(const std::string& path, bool json, const std::vector<std::s
   options.package_paths = package_paths;
   const Result<std::shared_ptr<const BodyModel>> model = import_urdf(path, options);
   if (!model) {
-    fmt::print(stderr, "{}\n", model.error());
+    write_line(OutputTo::error, model.error());
     return kInput;
   }
   const std::string text = json ? inspect_json(**model) : inspect_table(**model);
-  std::fwrite(text.data(), 1, text.size(), stdout);
+  write_result(text);
   return kFine;
 }
 

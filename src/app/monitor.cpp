@@ -2,11 +2,11 @@
 #include "app/monitor.h"
 
 #include <csignal>
-#include <cstdio>
 
 #include <fmt/format.h>
 
 #include "app/exit_code.h"
+#include "base/output.h"
 #include "base/system/signals.h"
 #include "console/console_link.h"
 
@@ -30,15 +30,14 @@ class Paper {
   /// False: that was the last one.
   bool show(const ConsoleLine& line) {
     if (line.kind == Kind::missed)
-      fmt::print(stderr, "({} lines are left out here: too much is going on)\n", line.count);
+      write_line(OutputTo::error, fmt::format("({} lines are left out here: too much is going on)", line.count));
     const bool message = line.kind == Kind::in || line.kind == Kind::out;
     if (!message && line.kind != Kind::change) return true;
     if ((command_.only_in && line.kind == Kind::out) || (command_.only_out && line.kind == Kind::in)) return true;
     if (begin_ == 0) begin_ = line.time;
     const char* const way = line.kind == Kind::in ? "<" : line.kind == Kind::out ? ">" : "=";
     const std::string_view who = line.end.empty() ? std::string_view("the show") : line.end;
-    fmt::print("{:9.3f} {} {:<21} {}\n", line.time - begin_, way, who, line.text);
-    std::fflush(stdout);
+    print_result("{:9.3f} {} {:<21} {}\n", line.time - begin_, way, who, line.text);
     return !command_.count || ++shown_ < *command_.count;
   }
 
@@ -63,9 +62,9 @@ int monitor_command(const MonitorCommand& command) {
     if (line && line->kind == Kind::error) return fail(kInput, "monitor: " + line->text);
     if (line && line->kind == Kind::refused) return fail(kInput, "monitor: " + line->text);
     if (line && line->kind == Kind::done && line->id == 1)
-      fmt::print(stderr, "limber: watching {} of {} ({})\n",
-                 command.changes ? "changes" : "what goes in (<) and out (>)", hello.pid, hello.text);
-    if (line && !paper.show(*line)) return kFine;
+      print_notice("watching {} of {} ({})", command.changes ? "changes" : "what goes in (<) and out (>)", hello.pid,
+                   hello.text);
+    if ((line && !paper.show(*line)) || result_error() != 0) return kFine;
     if (!line && link->ended()) return kFine;
   }
   return kFine;

@@ -16,6 +16,7 @@
 #include "base/build_info.h"
 #include "base/check.h"
 #include "base/embedded.h"
+#include "base/output.h"
 #include "base/system/file.h"
 #include "base/text.h"
 #include "script/files.h"
@@ -92,7 +93,7 @@ int write_and_say(const fs::path& path, std::string_view text) {
                             : full  ? "make room on the disk"
                                     : "look at the folder's permissions"));
   }
-  fmt::print("{}\n", printable(path.string()));
+  print_result("{}\n", printable(path.string()));
   return kFine;
 }
 
@@ -114,7 +115,7 @@ int new_show(const std::string& folder) {
     if (path == "luarc.json") path = ".luarc.json";
     if (const int code = write_and_say(root / path, filled(file.text, title)); code != kFine) return code;
   }
-  fmt::print("\nNext:  cd {} && {} play scripts/main.lua\n", shell_word(folder), program_command());
+  print_result("\nNext:  cd {} && {} play scripts/main.lua\n", shell_word(folder), program_command());
   return kFine;
 }
 
@@ -143,7 +144,7 @@ std::string taken_type(const fs::path& show, std::string_view name) {
   if (type.starts_with(kTwin) && built_in.find(type.substr(kTwin.size())) != nullptr) {
     return fmt::format("{} a behavior that comes with Limber, and scenes count on it: {}", is(type), found);
   }
-  fmt::print(stderr, "limber: new: note: in this show it takes the place of {}\n", printable(found));
+  print_notice("new: note: in this show it takes the place of {}", printable(found));
   return {};
 }
 
@@ -175,9 +176,9 @@ int new_file(const NewCommand& command) {
   const fs::path path = show / (scene ? "scripts" : "behaviors_lua") / (name + ".lua");
   if (const int code = write_and_say(path, filled(text->text, name)); code != kFine) return code;
   if (scene) {
-    fmt::print("\nNext:  {} play {}\n", program_command(), shell_word(path.string()));
+    print_result("\nNext:  {} play {}\n", program_command(), shell_word(path.string()));
   } else {
-    fmt::print("\nNext:  in a scene, body:add_behavior(\"{0}\", \"my_{0}\")\n", name);
+    print_result("\nNext:  in a scene, body:add_behavior(\"{0}\", \"my_{0}\")\n", name);
   }
   return kFine;
 }

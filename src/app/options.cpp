@@ -5,6 +5,7 @@
 #include <array>
 #include <cstdint>
 #include <optional>
+#include <sstream>
 #include <string>
 #include <vector>
 
@@ -32,6 +33,7 @@
 #include "app/send.h"
 #include "app/take.h"
 #include "base/build_info.h"
+#include "base/output.h"
 #include "base/team.h"
 #include "base/text.h"
 
@@ -410,20 +412,18 @@ void add_commands(CLI::App& app, CommandLine& line) {
 
 int print_shell_file(const CLI::App& app, const std::string& command, const std::string& shell) {
   const CommandInfo program = command_info(app);
-  fmt::print("{}", command == "man" ? man_page(program)
-                   : shell == "zsh" ? zsh_completion(program)
-                                    : bash_completion(program));
+  print_result("{}", command == "man" ? man_page(program)
+                     : shell == "zsh" ? zsh_completion(program)
+                                      : bash_completion(program));
   return 0;
 }
 
-}  // namespace
-
-int run_command_line(int argc, char** argv) {
+int run_command(int argc, char** argv) {
   CLI::App app{kAbout, "limber"};
   CommandLine line;
   add_commands(app, line);
   if (const auto mistyped = mistyped_command(argc, argv)) {
-    fmt::print(stderr, "limber: {}\n", *mistyped);
+    print_notice("{}", *mistyped);
     return kUsage;
   }
   std::vector<std::string> args = with_command(argc, argv);
@@ -431,14 +431,19 @@ int run_command_line(int argc, char** argv) {
   try {
     app.parse(args);
   } catch (const CLI::ParseError& error) {
-    if (error.get_exit_code() == 0) return app.exit(error);  // help, version
-    fmt::print(stderr, "limber: {}\n", usage_text(app, error));
+    if (error.get_exit_code() == 0) {  // help, version
+      std::ostringstream text;
+      (void)app.exit(error, text, text);
+      write_result(text.str());
+      return kFine;
+    }
+    print_notice("{}", usage_text(app, error));
     return kUsage;
   }
   const std::string command = app.get_subcommands().front()->get_name();
   if (command == "inspect") return inspect_command(line.robot, line.json, line.package_paths);
   if (command == "describe" && line.markdown) {
-    fmt::print("{}", describe_page());
+    print_result("{}", describe_page());
     return 0;
   }
   if (command == "describe") return describe_command(line.scene, line.json);
@@ -455,5 +460,9 @@ int run_command_line(int argc, char** argv) {
   if (command == "completion" || command == "man") return print_shell_file(app, command, line.shell);
   return play_command(line.play);
 }
+
+}  // namespace
+
+int run_command_line(int argc, char** argv) { return finish_command(run_command(argc, argv)); }
 
 }  // namespace limber

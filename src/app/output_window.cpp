@@ -1,10 +1,11 @@
 // Two contexts, of which one is current at a time.
 #include "app/output_window.h"
 
-#include <cstdio>
 #include <utility>
 
 #include <fmt/format.h>
+
+#include "base/output.h"
 
 namespace limber {
 
@@ -17,8 +18,8 @@ Result<std::unique_ptr<OutputWindow>> OutputWindow::open(Window& first, const st
   Result<std::unique_ptr<Window>> window =
       Window::open_beside(first, fmt::format("Limber output: {}", scene), kWidth, kHeight);
   if (!window) return Error{window.error()};
-  fmt::print(stderr, "limber: output window {} × {}; F11: the whole screen, F10: away with it\n", (*window)->width(),
-             (*window)->height());
+  print_notice("output window {} × {}; F11: the whole screen, F10: away with it", (*window)->width(),
+               (*window)->height());
   return std::unique_ptr<OutputWindow>(new OutputWindow(first, std::move(*window)));
 }
 

@@ -4,8 +4,6 @@
 #include <algorithm>
 #include <atomic>
 #include <chrono>
-#include <cstdio>
-#include <cstdlib>
 #include <memory>
 #include <optional>
 #include <semaphore>
@@ -22,6 +20,7 @@
 #include "app/window_show.h"
 #include "base/build_info.h"
 #include "base/log.h"
+#include "base/output.h"
 #include "base/system/resources.h"
 #include "base/system/signals.h"
 #include "base/system/thread.h"
@@ -126,10 +125,10 @@ void print_status(const EngineLink& link) {
   if (now == nullptr) return;
   std::size_t joints = 0;
   for (const RosterBody& body : now->roster->bodies) joints += body.joints.size();
-  fmt::print(stderr, "limber: {:8.1f} s  tick {}  {}  {} bodies, {} joints  OSC in {} out {}{}\n", now->time, now->tick,
-             now->paused ? std::string("paused") : fmt::format("{:.2f} × real time", now->speed),
-             now->roster->bodies.size(), joints, link.counters.received.load(), link.counters.sent.load(),
-             link.counters.dropped.load() + link.counters.dropped_kernel.load() > 0 ? "  (some were lost)" : "");
+  print_notice("{:8.1f} s  tick {}  {}  {} bodies, {} joints  OSC in {} out {}{}", now->time, now->tick,
+               now->paused ? std::string("paused") : fmt::format("{:.2f} × real time", now->speed),
+               now->roster->bodies.size(), joints, link.counters.received.load(), link.counters.sent.load(),
+               link.counters.dropped.load() + link.counters.dropped_kernel.load() > 0 ? "  (some were lost)" : "");
 }
 
 // the engine on its thread; it calls the main thread when the scene has run, and when the show is over
@@ -183,9 +182,9 @@ class Show {
 
 // a thread that does not come back can't be joined: the files are whole, so the process may go
 [[noreturn]] void leave(std::string_view why) {
-  fmt::print(stderr, "limber: {}\n", why);
-  std::fflush(nullptr);
-  std::_Exit(kInput);
+  print_notice("{}", why);
+  hurry_output();
+  end_program(kInput);
 }
 
 // until the show is over by itself or somebody ends it; true: somebody did. `window`: null when headless
@@ -197,6 +196,7 @@ bool watch(const Show& show, Engine& engine, const EngineLink& link, WindowShow*
     const Signal heard = listen(std::chrono::milliseconds(window != nullptr ? 0 : 1000));
     if (heard == Signal::none && window == nullptr) print_status(link);
     if (heard != Signal::end && !closed) continue;
+    hurry_output();
     engine.stop();
     // somebody waits: a second, or for less once there was another signal; that may have come with the first, as to a
     // program and to its group, and is no reason to cut a tick of usual length
@@ -214,15 +214,11 @@ bool watch(const Show& show, Engine& engine, const EngineLink& link, WindowShow*
 }
 
 int finish(const PlayOptions& options, Engine& engine, bool interrupted) {
-  std::fflush(stdout);
-  if (interrupted) fmt::print(stderr, "limber: ended at {:.2f} s\n", engine.world().time());
-  if (options.hash) {
-    fmt::print("hash {:016x} tick {}\n", engine.state_hash(), engine.world().tick());
-    std::fflush(stdout);
-  }
+  if (interrupted) print_notice("ended at {:.2f} s", engine.world().time());
+  if (options.hash) print_result("hash {:016x} tick {}\n", engine.state_hash(), engine.world().tick());
   if (!options.replay.empty()) {
     const TakeVerdict verdict = engine.verdict();
-    fmt::print(stderr, "limber: {}\n", text_of(verdict));
+    print_notice("{}", text_of(verdict));
     if ((verdict.parted && !options.current_scripts) || !verdict.damage.empty()) return kInput;
   }
   if (options.strict && engine.faults() > 0)
@@ -236,7 +232,7 @@ void open_console(ConsoleServer& console) {
     log_warning("there is no console: {}", open.error());
     return;
   }
-  fmt::print(stderr, "limber: console {}\n", console.path());
+  print_notice("console {}", console.path());
 }
 
 using QueryWish = std::optional<std::vector<ListenAddress>>;
@@ -249,8 +245,8 @@ Result<void> open_ports(const EngineLink& link, const OscOptions& osc, const Que
   Result<void> open = at ? query.start(*at) : Result<void>();
   if (!open && !osc.optional) return open;
   if (!open) log_warning("{}", open.error());
-  for (const std::string& line : network.lines()) fmt::print(stderr, "limber: {}\n", line);
-  fmt::print(stderr, "limber: {}\n", query_line(at, query));
+  for (const std::string& line : network.lines()) print_notice("{}", line);
+  print_notice("{}", query_line(at, query));
   return {};
 }
 
@@ -268,7 +264,7 @@ std::unique_ptr<WindowShow> open_window(const PlayOptions& options, EngineLink& 
     if (window) return std::move(*window);
     why = fmt::format(" ({})", window.error());
   }
-  fmt::print(stderr, "limber: playing headless{}; Ctrl+C ends it\n", why);
+  print_notice("playing headless{}; Ctrl+C ends it", why);
   return nullptr;
 }
 
@@ -283,18 +279,16 @@ int play_scene(const PlayOptions& options, EngineOptions engine_options, const O
   if ((!options.fast || options.watch) && options.replay.empty()) scene_watch.emplace(link, engine, scene_file);
   QueryServer query(link, query_doors(network, osc.allow));
   const auto close = [&](bool ended) {
-    Ending ending([&] {
-      const int code = finish(options, engine, ended);
-      std::fflush(nullptr);
-      std::_Exit(code);
-    });
-    engine.finish_saving();
-    engine.end_recovery();
-    ending.files_are_whole();
-    scene_watch.reset();
-    query.stop();
-    network.stop();
-    console.stop();
+    {
+      Ending ending([&] { end_program(finish(options, engine, ended)); });
+      engine.finish_saving();
+      engine.end_recovery();
+      ending.files_are_whole();
+      scene_watch.reset();
+      query.stop();
+      network.stop();
+      console.stop();
+    }
     return finish(options, engine, ended);
   };
   const auto give_up = [&](int code, const std::string& why) {
@@ -321,9 +315,7 @@ int play_scene(const PlayOptions& options, EngineOptions engine_options, const O
       log_error("the display is lost; playing on headless");
       const bool ended = watch(show, engine, link, nullptr);
       show.end();
-      const int code = close(ended);
-      std::fflush(nullptr);
-      std::_Exit(code);
+      end_program(close(ended));
     });
     interrupted = watch(show, engine, link, window.get());
     Window::on_display_lost({});
@@ -348,8 +340,8 @@ std::string left_aside(const PlayOptions& options) {
 int render_scene(const PlayOptions& options, EngineOptions engine_options) {
   EngineLink link;
   if (const std::string aside = left_aside(options); !aside.empty())
-    fmt::print(stderr, "limber: stills and films hear and send nothing: {} {} left aside\n", aside,
-               aside.find(',') == std::string::npos ? "is" : "are");
+    print_notice("stills and films hear and send nothing: {} {} left aside", aside,
+                 aside.find(',') == std::string::npos ? "is" : "are");
   const std::optional<double> duration = engine_options.duration;
   Engine engine(link, std::move(engine_options));
   if (const Result<void> started = engine.start(); !started) return fail(kInput, started.error());
@@ -360,11 +352,13 @@ int render_scene(const PlayOptions& options, EngineOptions engine_options) {
 }  // namespace
 
 int play_command(const PlayOptions& options) {
-  const Result<void> enough = system::check_resources({24, 10 + options.threads, 512 * 1024});
+  const Result<void> enough = system::check_resources({24, 11 + options.threads, 512 * 1024});
   if (!enough) return fail(kMachine, enough.error());
   system::block_signals();
+  start_output(options.fast || options.picture.offline() ? OutputMode::batch : OutputMode::live);
   const bool replays = !options.replay.empty();
-  fmt::print(stderr, "limber {} ({}): {}\n", version(), commit(), printable(replays ? options.replay : options.scene));
+  write_line(OutputTo::error, fmt::format("limber {} ({}): {}", version(), commit(),
+                                          printable(replays ? options.replay : options.scene)));
   if (Result<void> picture = check_picture(options.picture, options.duration); !picture)
     return fail(kUsage, picture.error());
   if (options.recover && options.picture.offline())

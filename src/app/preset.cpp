@@ -11,6 +11,7 @@
 
 #include "app/exit_code.h"
 #include "app/paths.h"
+#include "base/output.h"
 #include "base/text.h"
 #include "engine/preset_file.h"
 #include "engine/preset_import.h"
@@ -54,10 +55,10 @@ int preset_command(const PresetCommand& command) {
   std::string said;
   if (const Result<void> saved = file.save(before->presets, said); !saved)
     return fail(kMachine, fmt::format("{}: {}", printable(file.path()), saved.error()));
-  for (const std::string& problem : imported->problems) fmt::print(stderr, "limber: {}\n", printable(problem));
-  if (!said.empty()) fmt::print(stderr, "limber: {}\n", said);
-  fmt::print("{} presets are in {} now, {} of them new\n", before->presets.size(), printable(file.path()),
-             imported->presets.size());
+  for (const std::string& problem : imported->problems) print_notice("{}", printable(problem));
+  if (!said.empty()) print_notice("{}", said);
+  print_result("{} presets are in {} now, {} of them new\n", before->presets.size(), printable(file.path()),
+               imported->presets.size());
   return kFine;
 }
 

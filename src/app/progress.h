@@ -8,6 +8,7 @@
 
 #include <fmt/format.h>
 
+#include "base/output.h"
 #include "base/system/clock.h"
 
 namespace limber {
@@ -22,8 +23,8 @@ class Progress {
     if (now - said_ < kSayEvery || done == 0) return;
     said_ = now;
     const double rate = static_cast<double>(done) / (now - begin_);
-    fmt::print(stderr, "limber: {} {} of {}, {:.1f} a second, {} left\n", unit_, done, all_, rate,
-               minutes(static_cast<double>(all_ > done ? all_ - done : 0) / rate));
+    print_notice("{} {} of {}, {:.1f} a second, {} left", unit_, done, all_, rate,
+                 minutes(static_cast<double>(all_ > done ? all_ - done : 0) / rate));
   }
 
  private:

@@ -12,6 +12,7 @@
 #include "app/panel_setup.h"
 #include "app/paths.h"
 #include "app/progress.h"
+#include "base/output.h"
 #include "base/text.h"
 #include "view/offscreen.h"
 
@@ -71,8 +72,7 @@ Rendered draw_still(const PictureOptions& options, const PictureSize& size, Rend
   if (panel) panel->draw_over(renderer);
   if (const auto written = write_png(renderer.read(), options.screenshot); !written)
     return failed(kInput, written.error());
-  fmt::print(stderr, "limber: {}: {} × {}, at {} s\n", printable(options.screenshot), size.width, size.height,
-             number_text(at));
+  print_notice("{}: {} × {}, at {} s", printable(options.screenshot), size.width, size.height, number_text(at));
   return {};
 }
 
@@ -102,11 +102,11 @@ Rendered draw_film(const PictureOptions& options, const PictureSize& size, Rende
     progress.tell(done + 1);
   }
   if (const auto whole = (*film)->finish(); !whole) return failed(kMachine, whole.error());
-  fmt::print(stderr, "limber: {}: {} frames, {} × {}, {} a second{}\n", printable(options.render), done, size.width,
-             size.height, number_text(fps),
-             done < frames
-                 ? fmt::format("; {}, {} were asked for", cancelled ? "cancelled" : "the take has ended", frames)
-                 : "");
+  print_notice("{}: {} frames, {} × {}, {} a second{}", printable(options.render), done, size.width, size.height,
+               number_text(fps),
+               done < frames
+                   ? fmt::format("; {}, {} were asked for", cancelled ? "cancelled" : "the take has ended", frames)
+                   : "");
   // to the end, as a run of that duration goes
   if (cancelled) return {kFine, true};
   const Moments::Went went = moments.go_to(duration);
@@ -125,9 +125,9 @@ Rendered render(const PictureOptions& options, Engine& engine, EngineLink& link,
   const Quality quality = picture_quality(options, Quality::high);
   const Result<std::unique_ptr<Renderer>> renderer = Renderer::make((*context)->api(), shader_dir(), quality);
   if (!renderer) return failed(kMachine, renderer.error());
-  fmt::print(stderr, "limber: drawn by {} with {}\n", gl_driver(), gl_api_info((*context)->api()).name);
+  print_notice("drawn by {} with {}", gl_driver(), gl_api_info((*context)->api()).name);
   if (gl_is_software() && quality != Quality::low && !options.render.empty())
-    fmt::print(stderr, "limber: that is software, and takes its time; --quality low is several times faster\n");
+    print_notice("that is software, and takes its time; --quality low is several times faster");
   Moments moments(engine, link, cancel);
   if (options.render.empty()) return draw_still(options, *size, **renderer, moments, engine, link);
   return draw_film(options, *size, **renderer, moments, duration.value_or(0), cancel);

@@ -12,6 +12,7 @@
 
 #include "app/exit_code.h"
 #include "app/tagged_message.h"
+#include "base/output.h"
 #include "base/system/clock.h"
 #include "base/system/udp_socket.h"
 #include "base/system/wait.h"
@@ -76,9 +77,9 @@ Replies show_answers(int fd, double wait, bool late, const std::function<void()>
       heard = true;
       if (message.address == "/error" && message.args.size() == 2) {
         answers.refused = true;
-        fmt::print(stderr, "limber: {}: {}\n", printable(message.args[0].text), printable(message.args[1].text));
+        print_notice("{}: {}", printable(message.args[0].text), printable(message.args[1].text));
       } else {
-        fmt::print("{}\n", message_text(message));
+        print_result("{}\n", message_text(message));
       }
     }
     answers.whole = answers.last && heard;

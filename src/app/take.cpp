@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include "app/exit_code.h"
+#include "base/output.h"
 #include "base/text.h"
 #include "engine/take_reader.h"
 
@@ -45,8 +46,8 @@ void print_files(const TakeReader& reader) {
     }
   }
   for (const auto& [path, file] : files) {
-    fmt::print("  {} ({} bytes{})\n", printable(path), file.second,
-               file.first > 1 ? fmt::format(", {} versions", file.first) : std::string());
+    print_result("  {} ({} bytes{})\n", printable(path), file.second,
+                 file.first > 1 ? fmt::format(", {} versions", file.first) : std::string());
   }
 }
 
@@ -61,21 +62,21 @@ int take_command(const TakeCommand& command) {
     const auto at = count.runs.find(kind);
     return at == count.runs.end() ? std::uint64_t{0} : at->second;
   };
-  fmt::print("scene     {}\n", printable(reader.header().scene));
-  fmt::print("recorded  {} by limber {}\n", printable(reader.header().recorded), printable(reader.header().limber));
-  fmt::print("ticks     {}\n", count.ticks);
-  fmt::print("messages  {}, texts of consoles {}\n", count.messages, count.texts);
-  fmt::print("runs      {} reloads, {} resets, {} other scenes\n",
-             runs(TakeRun::Kind::take) + runs(TakeRun::Kind::reload) + runs(TakeRun::Kind::rerun),
-             runs(TakeRun::Kind::reset), runs(TakeRun::Kind::scene));
-  fmt::print("stopped   {} calls of scripts\n", count.stopped);
-  fmt::print("bytes     {}\n", reader.size());
+  print_result("scene     {}\n", printable(reader.header().scene));
+  print_result("recorded  {} by limber {}\n", printable(reader.header().recorded), printable(reader.header().limber));
+  print_result("ticks     {}\n", count.ticks);
+  print_result("messages  {}, texts of consoles {}\n", count.messages, count.texts);
+  print_result("runs      {} reloads, {} resets, {} other scenes\n",
+               runs(TakeRun::Kind::take) + runs(TakeRun::Kind::reload) + runs(TakeRun::Kind::rerun),
+               runs(TakeRun::Kind::reset), runs(TakeRun::Kind::scene));
+  print_result("stopped   {} calls of scripts\n", count.stopped);
+  print_result("bytes     {}\n", reader.size());
   if (reader.end()) {
-    fmt::print("end       whole; hash {:016x} tick {}\n", reader.end()->state, reader.end()->tick);
+    print_result("end       whole; hash {:016x} tick {}\n", reader.end()->state, reader.end()->tick);
   } else {
-    fmt::print("end       cut off behind tick {}, at byte {}\n", count.last, reader.position());
+    print_result("end       cut off behind tick {}, at byte {}\n", count.last, reader.position());
   }
-  fmt::print("files\n");
+  print_result("files\n");
   print_files(reader);
   if (!reader.damage().empty()) return fail(kInput, fmt::format("{}: {}", printable(command.file), reader.damage()));
   return kFine;

@@ -10,6 +10,7 @@
 #include "app/panel_setup.h"
 #include "app/paths.h"
 #include "base/log.h"
+#include "base/output.h"
 #include "base/system/clock.h"
 #include "base/system/thread.h"
 #include "base/text.h"
@@ -52,10 +53,10 @@ Result<std::unique_ptr<WindowShow>> WindowShow::open(const PictureOptions& optio
   const Quality quality = picture_quality(options, slow ? Quality::low : Quality::high);
   Result<std::unique_ptr<Renderer>> renderer = Renderer::make(api.api, shader_dir(), quality);
   if (!renderer) return Error{renderer.error()};
-  fmt::print(stderr, "limber: window {} × {}, drawn by {} with {}\n", size->width, size->height, gl_driver(), api.name);
+  print_notice("window {} × {}, drawn by {} with {}", size->width, size->height, gl_driver(), api.name);
   if (slow && options.quality.empty())
-    fmt::print(stderr, "limber: that is {}, so the picture is of quality low; --quality high looks better\n",
-               software ? "software" : api.name);
+    print_notice("that is {}, so the picture is of quality low; --quality high looks better",
+                 software ? "software" : api.name);
   return std::unique_ptr<WindowShow>(
       new WindowShow(std::move(*window), std::move(*renderer), options, settings, scene, link));
 }

@@ -1,10 +1,16 @@
 // The log's ring and its line to stderr.
 #include "base/log.h"
 
+#include <algorithm>
 #include <array>
-#include <cstdio>
+#include <chrono>
 #include <mutex>
+#include <optional>
+#include <utility>
 
+#include "base/hash.h"
+#include "base/log_throttle.h"
+#include "base/output.h"
 #include "base/text.h"
 
 namespace limber {
@@ -20,13 +26,26 @@ struct Log {
   std::uint64_t count = 0;
   std::array<std::uint64_t, 4> per_level{};
   bool to_stderr = true;
+  LogThrottle throttle;
+  TokenBucket printed{kMostPrintedAtOnce, 1'000'000'000 / kMostPrintedPerSecond};
+  std::uint64_t unprinted = 0;         // in all
+  std::uint64_t unprinted_lately = 0;  // since the last line that was printed
 };
 
 thread_local int silences = 0;
 
+// never destroyed: threads that are still there when the program ends may write
 Log& the_log() {
-  static Log log;
+  static Log& log = *new Log;
   return log;
+}
+
+std::int64_t log_time() { return std::chrono::steady_clock::now().time_since_epoch() / std::chrono::nanoseconds(1); }
+
+void add_to_ring(Log& log, LogLevel level, std::string_view shown) {
+  log.count++;
+  log.per_level[static_cast<std::size_t>(level)]++;
+  log.ring[log.count % kRing] = {log.count, level, shortened(shown, kMostText)};
 }
 
 }  // namespace
@@ -34,17 +53,55 @@ Log& the_log() {
 LogSilence::LogSilence() { silences++; }
 LogSilence::~LogSilence() { silences--; }
 
-void log_line(LogLevel level, std::string_view text) {
+void log_line(LogLevel level, std::string_view text, std::string_view source) {
   if (silences > 0) return;
   const std::string shown = printable(text);
+  const auto of = static_cast<unsigned char>(level);
+  const std::uint64_t hash = (source.empty() ? log_source(shown) : hash_bytes(source)) ^ of;
+  Log& log = the_log();
+  std::optional<std::uint64_t> silent;
+  {
+    const std::scoped_lock lock(log.mutex);
+    add_to_ring(log, level, shown);
+    if (!log.to_stderr || level == LogLevel::print) return;
+    silent = log.throttle.ask(hash, log_time(), output_is_live());
+  }
+  if (!silent) return;
+  const char* mark = level == LogLevel::error ? "error: " : level == LogLevel::warning ? "warning: " : "";
+  const std::string more = *silent > 0 ? fmt::format(" (and {} more since the last one)", *silent) : "";
+  print_notice("{}{}{}", mark, shown, more);
+}
+
+void log_print(std::string_view text, OutputTo to) {
+  const std::string shown = printable(text);
+  Log& log = the_log();
+  std::uint64_t missing = 0;
+  {
+    const std::scoped_lock lock(log.mutex);
+    if (silences == 0) add_to_ring(log, LogLevel::print, shown);
+    if (output_is_live() && !log.printed.spend(log_time())) {
+      log.unprinted++;
+      log.unprinted_lately++;
+      return;
+    }
+    missing = std::exchange(log.unprinted_lately, 0);
+  }
+  if (missing > 0)
+    log_warning("print: {} line{} left out; at most {} a second are printed", missing, missing == 1 ? " is" : "s are",
+                kMostPrintedPerSecond);
+  write_line(to, text);
+}
+
+void log_forget_sources() {
   Log& log = the_log();
   const std::scoped_lock lock(log.mutex);
-  log.count++;
-  log.per_level[static_cast<std::size_t>(level)]++;
-  log.ring[log.count % kRing] = {log.count, level, shortened(shown, kMostText)};
-  if (!log.to_stderr || level == LogLevel::print) return;
-  const char* mark = level == LogLevel::error ? "error: " : level == LogLevel::warning ? "warning: " : "";
-  std::fprintf(stderr, "limber: %s%s\n", mark, shown.c_str());
+  log.throttle.forget_sources();
+}
+
+std::uint64_t log_left_out() {
+  Log& log = the_log();
+  const std::scoped_lock lock(log.mutex);
+  return log.throttle.left_out() + log.unprinted;
 }
 
 std::vector<LogLine> log_since(std::uint64_t seen) {

@@ -1,4 +1,6 @@
-// The log: lines to stderr, and the last thousand kept in a ring for whoever shows them, with what scripts print.
+// The log: lines to standard error, and the last thousand kept in a ring for the panel and consoles, with what scripts
+// print. The ring gets every line; standard error gets ten of each source, then one a minute (LogThrottle),
+// and in a show (OutputMode::live) all sources together 2000 lines at once and two a second.
 #pragma once
 
 #include <cstdint>
@@ -9,6 +11,8 @@
 #include <fmt/format.h>
 
 namespace limber {
+
+enum class OutputTo : std::uint8_t;
 
 enum class LogLevel : std::uint8_t {
   info,
@@ -24,8 +28,20 @@ struct LogLine {
 };
 
 /// Writes one line to stderr and to the ring, `print` to the ring alone. Control characters are shown escaped; the ring
-/// keeps the beginning and the end of a line of more than 4 KiB. [any]
-void log_line(LogLevel level, std::string_view text);
+/// keeps the beginning and the end of a line of more than 4 KiB. `source`: the place that the line is about
+/// ("scene.lua:12"); empty: log_source() of the text. [any]
+void log_line(LogLevel level, std::string_view text, std::string_view source = {});
+
+/// Writes what a script printed to `to`, as it is, and to the ring. In a show (OutputMode::live) `to` gets at
+/// most 2000 lines at once and 200 a second. [any]
+void log_print(std::string_view text, OutputTo to);
+inline constexpr int kMostPrintedAtOnce = 2000;
+inline constexpr int kMostPrintedPerSecond = 200;
+
+/// A file of the scene was saved: its faults are new, and are written even if they repeat themselves. [any]
+void log_forget_sources();
+/// Lines that `to` and stderr did not get because their source repeats itself. [any]
+std::uint64_t log_left_out();
 
 /// The lines after `seen`, oldest first; at most the last 1000. [any]
 std::vector<LogLine> log_since(std::uint64_t seen);

@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include "base/log.h"
+#include "base/output.h"
 #include "base/text.h"
 #include "engine/engine.h"
 
@@ -76,12 +77,7 @@ void Engine::plan_osc(const OscPlan& plan) {
 
 void Engine::print(std::string_view text) {
   if (again_) return;
-  log_line(LogLevel::print, text);
-  if (options_.print) {
-    ScriptHost::print(text);
-  } else {
-    fmt::print(stderr, "{}\n", text);
-  }
+  log_print(text, options_.print ? OutputTo::out : OutputTo::error);
 }
 
 void Engine::script_error(std::string_view file, int line, std::string_view text) {
@@ -93,7 +89,7 @@ void Engine::script_error(std::string_view file, int line, std::string_view text
   }
   faults_++;
   reload_.faulty(file);
-  log_error("{}", text);
+  log_line(LogLevel::error, text, fmt::format("{}:{}", file, line));
   push_out({Outgoing::To::event,
             {},
             {"/script/error",

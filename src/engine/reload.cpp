@@ -56,6 +56,8 @@ bool Reload::take_rerun(const Stage& stage) {
 
 Reload::End Reload::take(Draft& draft, Stage& stage) {
   if (draft.order().before != description_) return End::outdated;
+  const bool from_disk = draft.order().inputs.sources == nullptr;
+  if (from_disk) log_forget_sources();
   if (!draft.ran()) {
     keep_files(draft.files());
     host_.script_error(draft.fault().file, draft.fault().line, draft.ran().error());
@@ -77,7 +79,6 @@ Reload::End Reload::take(Draft& draft, Stage& stage) {
   description_ = draft.description();
   script_ = draft.script();
   sources_ = stage.scene->sources();
-  const bool from_disk = draft.order().inputs.sources == nullptr;
   if (from_disk) {
     keep_files({});
     stage.world.panic().end();  // the mended scene plays

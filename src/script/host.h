@@ -1,7 +1,6 @@
 // ScriptHost: what a scene may ask of the outside. The engine implements it; scripts never see a socket. [sim]
 #pragma once
 
-#include <cstdio>
 #include <span>
 #include <string>
 #include <string_view>
@@ -9,6 +8,7 @@
 
 #include "base/message.h"
 #include "base/osc_plan.h"
+#include "base/output.h"
 #include "base/result.h"
 
 namespace limber {
@@ -42,13 +42,7 @@ class ScriptHost {
   /// A script's fault, with file and line: log, panel, /script/error. Empty text: the file is mended.
   virtual void script_error(std::string_view file, int line, std::string_view text) = 0;
   /// print(…): a line of text, as it is, to stdout. A run beside the show prints too. [any]
-  virtual void print(std::string_view text) {
-    flockfile(stdout);
-    std::fwrite(text.data(), 1, text.size(), stdout);
-    std::fputc('\n', stdout);
-    std::fflush(stdout);
-    funlockfile(stdout);
-  }
+  virtual void print(std::string_view text) { write_line(OutputTo::out, text); }
 };
 
 }  // namespace limber

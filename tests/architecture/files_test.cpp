@@ -46,6 +46,18 @@ TEST(Files, MathIsTheSameOnEveryMachine) {
   EXPECT_TRUE(math_complaints("src/view/a.cpp", "x = std::sin(y);").empty());
 }
 
+TEST(Files, TextIsWrittenByOneModule) {
+  for (const SourceFile& file : source_files("src", {".h", ".cpp"})) {
+    for (const std::string& complaint : output_complaints(file.path, file.text)) ADD_FAILURE() << complaint;
+  }
+  for (const char* line :
+       {"fmt::print(stderr, \"x\");", "std::cerr << 1;", "std::fputs(\"x\", stderr);", "printf(text);"})
+    EXPECT_EQ(output_complaints("src/app/a.cpp", line).size(), 1U) << line;
+  for (const char* line :
+       {"print_notice(\"to stderr\");", "// not std::cout", "std::snprintf(a, 4, b);", "log_to_stderr(1);"})
+    EXPECT_TRUE(output_complaints("src/app/a.cpp", line).empty()) << line;
+}
+
 TEST(Files, TheMapNamesEveryRoom) {
   std::ifstream in(LIMBER_SOURCE_DIR "/src/README.md");
   const std::string map{std::istreambuf_iterator<char>(in), {}};

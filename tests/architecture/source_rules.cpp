@@ -233,6 +233,26 @@ std::vector<std::string> math_complaints(std::string_view path, std::string_view
   return complaints;
 }
 
+std::vector<std::string> output_complaints(std::string_view path, std::string_view text) {
+  std::vector<std::string> complaints;
+  if (path == "src/app/console_terminal.cpp") return complaints;  // libedit takes streams
+  static const std::regex use(
+      R"((fmt::print|std::(cout|cerr|clog|fflush|perror)|\b(stdout|stderr|f?printf|puts|putchar)\b))");
+  std::istringstream lines{std::string(text)};
+  std::string line;
+  for (int number = 1; std::getline(lines, line); ++number) {
+    constexpr std::array kParts{"print", "cout", "cerr", "clog", "fflush", "perror", "stdout", "stderr", "put"};
+    std::string code = line.substr(0, line.find("//"));
+    if (std::ranges::none_of(kParts, [&](const char* part) { return code.find(part) != std::string::npos; })) continue;
+    code = std::regex_replace(code, std::regex(R"("([^"\\]|\\.)*")"), "\"\"");
+    std::smatch found;
+    if (!std::regex_search(code, found, use)) continue;
+    complaints.push_back(std::string(path) + ":" + std::to_string(number) + ": '" + found.str() +
+                         "' throws or blocks: write by base/output.h");
+  }
+  return complaints;
+}
+
 std::vector<SourceFile> source_files(std::string_view folder, const std::vector<std::string>& endings) {
   namespace fs = std::filesystem;
   const fs::path root = LIMBER_SOURCE_DIR;

@@ -21,6 +21,9 @@ std::vector<std::string> shape_complaints(std::string_view path, std::string_vie
 /// bits on every machine: in the modules whose results reach the state hash.
 std::vector<std::string> math_complaints(std::string_view path, std::string_view text);
 
+/// Complaints about text that is written to stdout or stderr by other means than base/output.h: those throw or block.
+std::vector<std::string> output_complaints(std::string_view path, std::string_view text);
+
 /// The rooms, base first: the folders that src/ may have.
 std::vector<std::string> rooms();
 
