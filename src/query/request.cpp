@@ -27,7 +27,7 @@ constexpr std::array<std::string_view, 3> kChanging = {"ADD_NODE", "REMOVE_NODE"
 constexpr std::array<std::string_view, 8> kExtensions = {"LISTEN",       "IGNORE",       "PATH_ADDED",  "PATH_REMOVED",
                                                          "PATH_CHANGED", "LIMBER_DEPTH", "LIMBER_FIND", "LIMBER_LOG"};
 
-HttpAnswer refusal(int status, std::string text) { return {status, kText, text + "\n", {}}; }
+HttpAnswer refusal(int status, const std::string& text) { return {status, kText, text + "\n", {}}; }
 
 HttpAnswer json_answer(std::string json) { return {200, "application/json", std::move(json), {}}; }
 HttpAnswer nothing_to_tell() { return {204, "", "", {}}; }
@@ -99,7 +99,7 @@ Result<TreePlace> find(const Tree& tree, std::string_view path) {
 
 HttpAnswer attribute_of(const Image& image, const TreePlace& place, std::string_view name) {
   const auto member = [&](std::string_view json) { return json_answer(fmt::format(R"({{"{}":{}}})", name, json)); };
-  const HttpAnswer nothing = nothing_to_tell();
+  HttpAnswer nothing = nothing_to_tell();
   if (name == "FULL_PATH") return member(json_text(image.tree->path(place)));
   if (name == "VALUE") {
     const std::string value = place_value_json(image, place);
