@@ -268,9 +268,27 @@ std::unique_ptr<WindowShow> open_window(const PlayOptions& options, EngineLink& 
   return nullptr;
 }
 
+// SIGUSR2 is a panic, whatever the main thread is doing
+class PanicSignal {
+ public:
+  explicit PanicSignal(EngineLink& link) {
+    link_here.store(&link);
+    system::on_user_signal([](int) {
+      if (EngineLink* const here = link_here.load()) here->panic_signal.store(true);
+    });
+  }
+  ~PanicSignal() { link_here.store(nullptr); }
+  PanicSignal(const PanicSignal&) = delete;
+  PanicSignal& operator=(const PanicSignal&) = delete;
+
+ private:
+  static inline std::atomic<EngineLink*> link_here{nullptr};
+};
+
 int play_scene(const PlayOptions& options, EngineOptions engine_options, const OscOptions& osc,
                const QueryWish& query_wish) {
   EngineLink link;
+  const PanicSignal panic_signal(link);
   const std::string scene_file = engine_options.scene;
   Engine engine(link, std::move(engine_options));
   Network network(link, osc, live_offsets());

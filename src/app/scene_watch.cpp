@@ -3,8 +3,10 @@
 
 #include <algorithm>
 #include <array>
+#include <deque>
 #include <filesystem>
 #include <functional>
+#include <iterator>
 #include <memory>
 #include <utility>
 
@@ -38,7 +40,10 @@ SceneWatch::SceneWatch(EngineLink& link, Engine& engine, const std::string& scen
       takes_(ScriptFiles(scene, {}).show_folder() + "/takes"),
       way_(way) {
   link_.ask_scenes = [this](const Message& message, const Origin& origin) {
-    if (!wishes_.push({{message}, origin})) return refuse(message, origin, "too many questions about scenes at once");
+    const bool take = message.address.starts_with("/take/");
+    const std::uint64_t stops = take ? Engine::stops_of_takes(link_) : link_.panics.load();
+    if (!wishes_.push({{message}, origin, nullptr, stops}))
+      return refuse(message, origin, "too many questions about scenes at once");
     wake_.notify();
   };
   link_.rerun_scene = [this] {
@@ -62,20 +67,24 @@ void SceneWatch::stop() {
   link_.ask_scenes = nullptr;
 }
 
+// a saved file comes first: questions about scenes never hold it up
 void SceneWatch::run(FileWatch& files) {
   system::name_this_thread("limber-watch");
+  std::deque<Command> waiting;
   std::vector<Command> wishes;
   while (!stop_.load()) {
-    sleep(files);
+    if (waiting.empty()) sleep(files);
     const bool saved = !files.poll(FileWatch::Time::clock::now()).empty() || std::exchange(late_, false);
     const bool rerun = rerun_.exchange(false);
-    bool other = false;
+    if (saved || rerun) late_ = !engine_.reload(!saved) && saved;
     wishes_.drain(wishes);
-    for (const Command& wish : wishes) other = (!stop_.load() && serve(wish.messages.front(), wish.origin)) || other;
-    if (stop_.load() || !(saved || rerun || other)) continue;
-    // one that has just begun has read what there is
-    if (!other) late_ = !engine_.reload(!saved) && saved;
-    files.watch(engine_.files(), FileWatch::Time::clock::now());
+    std::ranges::move(wishes, std::back_inserter(waiting));
+    bool other = false;
+    if (!waiting.empty() && !stop_.load()) {
+      other = serve(waiting.front());
+      waiting.pop_front();
+    }
+    if (saved || rerun || other) files.watch(engine_.files(), FileWatch::Time::clock::now());
   }
 }
 
@@ -109,7 +118,9 @@ std::vector<std::string> SceneWatch::takes() const {
   return names;
 }
 
-bool SceneWatch::play_take(const Message& wish, const Origin& origin) {
+bool SceneWatch::play_take(const Command& command) {
+  const Message& wish = command.messages.front();
+  const Origin& origin = command.origin;
   const std::vector<std::string> names = takes();
   std::string name = wish.args.empty() ? "" : wish.args[0].text;
   if (name.ends_with(".take")) name.resize(name.size() - 5);
@@ -120,7 +131,7 @@ bool SceneWatch::play_take(const Message& wish, const Origin& origin) {
                          : fmt::format("there is no take '{}' in takes/{}", printable(name), name_hint(name, names)));
     return false;
   }
-  const Result<void> played = engine_.play_take(takes_ + "/" + name + ".take");
+  const Result<void> played = engine_.play_take(takes_ + "/" + name + ".take", command.arrival);
   if (!played) {
     refuse(wish, origin, played.error());
     return false;
@@ -130,8 +141,10 @@ bool SceneWatch::play_take(const Message& wish, const Origin& origin) {
 }
 
 // whether another scene plays now
-bool SceneWatch::serve(const Message& wish, const Origin& origin) {
-  if (wish.address.starts_with("/take/")) return play_take(wish, origin);
+bool SceneWatch::serve(const Command& command) {
+  const Message& wish = command.messages.front();
+  const Origin& origin = command.origin;
+  if (wish.address.starts_with("/take/")) return play_take(command);
   const std::vector<std::string> names = scenes();
   if (wish.args.empty()) {
     Message answer{"/list/scenes", {}};
@@ -148,7 +161,8 @@ bool SceneWatch::serve(const Message& wish, const Origin& origin) {
                        std::filesystem::path(folder_).filename().string(), name_hint(name, names)));
     return false;
   }
-  const Result<void> changed = engine_.change_scene((std::filesystem::path(folder_) / (name + ".lua")).string());
+  const Result<void> changed =
+      engine_.change_scene((std::filesystem::path(folder_) / (name + ".lua")).string(), command.arrival);
   if (changed.ok()) {
     log_info("{} plays from its start", name);
     link_.push_out({Outgoing::To::sender, origin, {"/transport/playing", {Arg::of(name)}}});

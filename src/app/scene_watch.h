@@ -30,8 +30,8 @@ class SceneWatch {
 
  private:
   void run(FileWatch& files);
-  bool serve(const Message& wish, const Origin& origin);
-  bool play_take(const Message& wish, const Origin& origin);
+  bool serve(const Command& command);
+  bool play_take(const Command& command);
   std::vector<std::string> scenes() const;
   std::vector<std::string> takes() const;
   void refuse(const Message& wish, const Origin& origin, const std::string& why);
@@ -42,7 +42,8 @@ class SceneWatch {
   std::string folder_;
   std::string takes_;  // the folder of the show's
   FileWatch::Way way_;
-  Inbox<Command> wishes_{64, std::size_t{1} << 16};  // messages about scenes
+  // messages about scenes; `arrival`: the panics, or ends of takes, when they came
+  Inbox<Command> wishes_{64, std::size_t{1} << 16};
   system::Wake wake_;
   bool late_ = false;  // something was saved while a take played; of the thread
   std::atomic<bool> stop_{false};

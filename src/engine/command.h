@@ -31,6 +31,7 @@ struct Command {
   std::vector<Message> messages;
   Origin origin;
   std::shared_ptr<const Evaluate> evaluate = nullptr;  ///< Done after the messages.
+  std::uint64_t arrival = 0;                           ///< CommandInbox::arrive(); 0: the inbox numbers it.
 };
 
 /// A message on its way out.
@@ -69,6 +70,9 @@ struct Counters {
   std::atomic<std::uint64_t> dropped_kernel{0};  ///< Lost by the kernel: the socket's buffer was full.
   std::atomic<std::uint64_t> sent{0};            ///< Datagrams sent.
   std::atomic<std::uint64_t> unsent{0};          ///< Datagrams that the system did not take, or that came back.
+  std::atomic<std::uint64_t> discarded{0};       ///< Requests that a later urgent one overtook and discarded.
+  std::atomic<std::uint64_t> unheard{0};         ///< Messages that the scene's handlers missed: too many waited.
+  std::atomic<std::uint64_t> disabled{0};        ///< Handlers that failed and are disabled now.
 };
 
 }  // namespace limber

@@ -81,7 +81,10 @@ std::string thing_text(const Store& store, NodeId id) {
 }
 
 // how a button tells that it was let go; nothing is to be done then
-bool released(std::span<const Arg> value) { return value.size() == 1 && value[0].is_numeric() && value[0].number == 0; }
+bool released(std::span<const Arg> value) {
+  if (value.size() != 1 || value[0].kind == Arg::Kind::nil) return false;
+  return value[0].is_text() ? parse_number(value[0].text) == 0.0 : value[0].number == 0;
+}
 
 }  // namespace
 
@@ -419,7 +422,9 @@ Outcome Dispatch::take(const Message& message) {
   if (plain_address(message.address, buffer) != "/take/stop") {
     if (args.size() > 1 || (args.size() == 1 && !args[0].is_text()))
       return Outcome::refused("takes the name of the take, or nothing");
-  } else if (!args.empty() && !released(args)) {
+  } else if (released(args)) {
+    return {};
+  } else if (args.size() > 1 || (args.size() == 1 && args[0].is_text())) {
     return Outcome::refused("takes no arguments");
   }
   Outcome outcome;

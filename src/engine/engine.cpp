@@ -21,6 +21,7 @@ constexpr auto kLongestWait = std::chrono::milliseconds(50);
 // of a tick's work: a refusal or an answer, and what the scene's handlers may hear
 constexpr int kTextWork = 7;
 constexpr int kHeardWork = 3;
+constexpr int kEvaluationWork = 512;  // a text of a console may compute for long
 
 // the time since the last lap
 class Stopwatch {
@@ -152,6 +153,7 @@ std::unique_ptr<Stage> Engine::swap_stage(std::unique_ptr<Stage> fresh) {
   (void)fresh->store.set(fresh->world.visuals().look().id(), overlay,
                          {stage_->store.values(stage_->world.visuals().look().id(), overlay), 1});
   faults_ += stage_->world.health_events();
+  heard_.clear();
   std::swap(stage_, fresh);
   history_.begin_anew("the scene has begun there");
   edits_.follow(fresh->store, stage_->store);
@@ -200,7 +202,7 @@ void Engine::run() {
     } else if (wait_for_tick()) {
       pace();
       pass(true);
-    } else if (commands_wait_.exchange(false, std::memory_order_relaxed)) {
+    } else if (commands_wait_.exchange(false, std::memory_order_relaxed) || link_.panic_signal.load()) {
       pass(false);
     }
   }
@@ -251,11 +253,13 @@ void Engine::pass(bool may_step) {
   Stopwatch watch;
   calls_.begin_tick();
   requests_.serve();
+  if (plays_ && (link_.panic_signal.load() || link_.inbox.waits(UrgentKind::panic))) end_play();
   if (replays() && !next_of_take(may_step)) {
     if (!plays_) return;
     end_play();
   }
   rerun();
+  age_panic(may_step);
   drain();
   times_.commands = watch.lap();
 
@@ -311,6 +315,8 @@ void Engine::play(bool running) {
 }
 
 void Engine::publish() {
+  link_.counters.disabled.store(stage_->scene == nullptr ? 0 : stage_->scene->disabled_handlers(),
+                                std::memory_order_relaxed);
   stage_->counters.tell();
   stage_->preset_node.tell();
   tell_transport();
@@ -329,16 +335,24 @@ void Engine::drain() {
   (void)stage_->transport.take_back();  // of the command line
   Hands hands(stage_->world, presets_, edits_, notes_);
   if (replays()) return replay_messages(hands);
+  execute_urgent(hands);
+  answer_questions(hands);
+  const double begun = options_.clock();
   bool taken = false;
   for (int work = kTickWork; work > 0;) {
     if (next_command_ < commands_.size()) {
       Command& command = commands_[next_command_++];
       hands.begin(command.origin);
       for (Message& message : command.messages) {
+        work--;
+        if (overtaken(message, command.arrival) || waits_for_steps(message, command.origin)) continue;
         work -= execute(message, command.origin);
         if (std::exchange(went_back_, false)) hands.begin(command.origin);
       }
-      if (command.evaluate != nullptr) evaluate(*command.evaluate, command.origin);
+      if (command.evaluate == nullptr) continue;
+      evaluate(*command.evaluate, command.origin);
+      work -= kEvaluationWork;
+      if (!options_.fast && options_.clock() - begun > kHandlerSeconds) break;
       continue;
     }
     asks_ = asks_of_batch_;
@@ -413,29 +427,17 @@ int Engine::execute(Message& message, const Origin& origin) {
   const bool listens = stage_->scene != nullptr && stage_->scene->listens();
   const bool applied = outcome.kind == Outcome::Kind::applied;
   const int work =
-      1 + static_cast<int>(stage_->dispatch.written().size()) + (applied ? 0 : kTextWork) + (listens ? kHeardWork : 0);
+      static_cast<int>(stage_->dispatch.written().size()) + (applied ? 0 : kTextWork) + (listens ? kHeardWork : 0);
   // the scene's handlers hear it after every message of the tick took effect
   if (back) return work;
   if (listens) {
-    heard_.push_back({std::move(message), origin, unknown, std::move(outcome.error)});
+    const bool fits = heard_.push({std::move(message), origin, unknown, std::move(outcome.error)}, has_rules());
+    if (!fits && !again_) link_.counters.unheard.fetch_add(1, std::memory_order_relaxed);
   } else if (unknown && !again_) {
     link_.counters.unknown.fetch_add(1, std::memory_order_relaxed);
     refuse(message.address, origin, outcome.error);
   }
   return work;
-}
-
-void Engine::call_handlers() {
-  Hands hands(stage_->world, presets_, edits_, notes_);
-  for (Heard& heard : heard_) {
-    hands.begin(heard.origin);
-    const bool handled = stage_->scene->message(heard.message, heard.origin);
-    if (handled || !heard.unknown || again_) continue;
-    link_.counters.unknown.fetch_add(1, std::memory_order_relaxed);
-    refuse(heard.message.address, heard.origin, heard.error);
-  }
-  heard_.clear();
-  answers_taken_ = false;
 }
 
 std::uint64_t Engine::state_hash() const {

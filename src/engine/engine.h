@@ -12,8 +12,10 @@
 #include <vector>
 
 #include "base/log.h"
+#include "base/system/clock.h"
 #include "engine/clock.h"
 #include "engine/hand.h"
+#include "engine/handler_queue.h"
 #include "engine/hands.h"
 #include "engine/history.h"
 #include "engine/image_maker.h"
@@ -47,6 +49,8 @@ struct EngineOptions {
   bool recover = false;       ///< `--recover`: what a run that did not end well has left is brought back.
   int threads = 1;            ///< That share out a step, 1 to Team::kMost, with the same result.
   std::vector<Message> sets;  ///< `--set`: the performer's hand before the first tick, after the preset.
+  /// Real time in seconds, for budgets and for the first second of a panic; for tests.
+  std::function<double()> clock = system::clock_seconds;
 };
 
 class Engine : private ScriptHost {
@@ -54,6 +58,16 @@ class Engine : private ScriptHost {
   /// Work that messages may make in one tick: 1 each and 1 a value, more where a text is made or the scene listens. The
   /// rest waits for the next ticks, in its order, so that a flood does not hold up time. A datagram is never split.
   static constexpr int kTickWork = 8192;
+  /// Another request for a panic within its first second is ignored, so that a second press by mistake doesn't end it,
+  /// s.
+  static constexpr double kPanicFirst = 1;
+  /// Time that handlers (osc:on) get: this part of real time, saved up to this many seconds. One call may exceed it;
+  /// then the next ones wait until that is made up. Messages wait in order, and what they set acts at once. With --fast
+  /// there is no limit.
+  static constexpr double kHandlerShare = 0.5;
+  static constexpr double kHandlerSeconds = 0.008;
+  /// Questions (/get) that wait for the ticks of a step before them.
+  static constexpr std::size_t kMostQuestions = 256;
 
   /// The link outlives the engine, and nobody calls its `wake_engine` while the engine goes.
   Engine(EngineLink& link, EngineOptions options);
@@ -82,10 +96,14 @@ class Engine : private ScriptHost {
   Reload::End reload_now(bool again = false);
   /// Runs another scene's file beside the show; it plays from its start instead, between two ticks, without what the
   /// performer has set. An error: what is wrong with it, and the show plays on. [any but sim, while run() goes]
-  Result<void> change_scene(const std::string& file);
+  /// `panics`: EngineLink::panics when it was asked for; another panic since then discards it.
+  Result<void> change_scene(const std::string& file, std::optional<std::uint64_t> panics = {});
   /// A take plays in the place of the show, from its begin to its end or /take/stop; from there the show goes on in the
   /// performer's hands. An error: what is wrong with the take, and the show plays on. [any but sim, while run() goes]
-  Result<void> play_take(const std::string& file);
+  /// `stops`: stops_of_takes() when it was asked for; another one since then discards it.
+  Result<void> play_take(const std::string& file, std::optional<std::uint64_t> stops = {});
+  /// Panics and ends of takes so far. [any]
+  static std::uint64_t stops_of_takes(const EngineLink& link) { return link.panics.load() + link.take_stops.load(); }
   /// Files that are worth a reload when they change. [any]
   std::vector<SourceFile> files() const { return reload_.files(); }
 
@@ -176,6 +194,7 @@ class Engine : private ScriptHost {
   void end_play();
   bool next_of_take(bool& may_step);
   void refuse_commands();
+  void refuse_urgent();
   void refuse_hand(const Message& message, const Origin& origin);
   TakeBegin take_begin(bool reset) const;
   void replay_runs();
@@ -191,12 +210,22 @@ class Engine : private ScriptHost {
   void rerun();
   Result<void> between_ticks(const std::function<void()>& work);
   void drain();
-  /// What the message cost of kTickWork.
+  void execute_urgent(Hands& hands);
+  bool overtaken(const Message& message, std::uint64_t arrival);
+  bool waits_for_steps(const Message& message, const Origin& origin);
+  void answer_questions(Hands& hands);
+  void age_panic(bool may_step);
+  void note_event(const TakeEvent& event);
+  bool carry_out_event(const Message& message);
+  /// Whether the rules of kTakeRules hold: not in takes of before.
+  bool has_rules() const { return player_ == nullptr || player_->rules() > 0; }
+  /// What the message cost of kTickWork, beside 1.
   int execute(Message& message, const Origin& origin);
   void evaluate(const Evaluate& wish, const Origin& origin);
   Evaluation evaluate_text(std::string_view text);
   void refuse(std::string_view address, const Origin& origin, std::string_view error);
   void call_handlers();
+  void call_handler();
   void publish();
   void make_image(std::uint64_t asks);
   void say_clamped(const Message& message, const Row& row);
@@ -216,7 +245,8 @@ class Engine : private ScriptHost {
   ChangeNotes notes_{link_.changes};
   ChangeLog unread_;
   ChangeNotes quiet_notes_{unread_};
-  History history_{hand_, edits_, presets_};
+  HandlerQueue heard_;  // messages for the scene's handlers
+  History history_{hand_, edits_, presets_, heard_};
   bool went_back_ = false;  // with the last message
   bool again_ = false;      // what was done once is done again
   std::optional<LogSilence> silence_;
@@ -245,17 +275,24 @@ class Engine : private ScriptHost {
   Clock clock_;
   PhaseTimes times_;
 
-  struct Heard {
+  struct Question {
     Message message;
     Origin origin;
-    bool unknown = false;
-    std::string error;
   };
+  std::vector<UrgentRequest> urgent_;   // scratch
+  Overtaken overtaken_;                 // what urgent requests discard
+  double panic_age_ = 0;                // s, of one that is not settled
+  bool ignored_said_ = false;           // that a request was ignored
+  double pass_at_ = 0;                  // the clock in the last pass
+  double handler_seconds_ = 0;          // left for handlers; negative: to be made up
+  double handlers_at_ = 0;              // the clock when they were called last
+  std::optional<std::uint64_t> hears_;  // of a replay: messages that handlers hear in this tick
+  std::vector<Origin> step_origins_;    // whose steps are being made
+  std::vector<Question> questions_;     // of theirs, until the steps are made
   std::vector<Command> commands_;
   std::size_t next_command_ = 0;            // the first that is yet to be done
   std::uint64_t asks_of_batch_ = 0;         // images asked for before commands_ was taken
   std::uint64_t asks_ = 0;                  // images that may be made: all that came before was done
-  std::vector<Heard> heard_;                // messages of this tick, for the scene's handlers
   std::vector<Message> wishes_;             // of scripts, about presets
   std::vector<const Row*> said_clamped_;    // rows whose clamping was said
   std::vector<std::string> said_left_out_;  // lately, of presets

@@ -87,6 +87,7 @@ void Engine::do_again_until(const PastGoal& goal) {
   history_.cut(there);
   begin_again(false);
   if (stopped) log_warning("rewind: a script computes too long in what is repeated; time went back further than asked");
+  hears_.reset();
   presets_.take_list(std::move(presets));
   for (std::size_t i = 0; i < kOfTheHour.size(); i++)
     (void)store.set(stage_->world.id(), kOfTheHour[i], {&of_the_hour[i], 1});
@@ -111,7 +112,9 @@ void Engine::do_again(PastPass& pass) {
   stage_->dispatch.begin_tick();
   {
     Hands hands(stage_->world, presets_, edits_, quiet_notes_);
+    hears_.reset();
     for (TakeMessage& input : pass.messages) {
+      if (!input.evaluate && carry_out_event(input.message)) continue;
       hands.begin(input.origin);
       if (!input.evaluate) {
         execute(input.message, input.origin);

@@ -28,6 +28,7 @@ SceneOptions Engine::scene_options() const {
   SceneOptions options = options_.scene_options;
   if (replays() && !player_->current_scripts()) options.limits = wide_limits(plays_);
   if (replays()) options.keep_timers = player_->keeps_timers();
+  if (!has_rules()) options.limits.disable_failed_handlers = false;
   return options;
 }
 
@@ -66,7 +67,8 @@ bool Engine::next_of_take(bool& may_step) {
   return true;
 }
 
-Result<void> Engine::play_take(const std::string& file) {
+Result<void> Engine::play_take(const std::string& file, std::optional<std::uint64_t> stops) {
+  const std::uint64_t asked = stops.value_or(stops_of_takes(link_));
   auto player = TakePlayer::open(file, false);
   if (!player) return Error{player.error()};
   (*player)->next();
@@ -77,6 +79,9 @@ Result<void> Engine::play_take(const std::string& file) {
   const Result<void> done = between_ticks([&] {
     if (recorder_ != nullptr || take_wanted_) {
       begun = Error{"a take is being recorded; /take/stop ends it"};
+    } else if (stops_of_takes(link_) != asked) {
+      link_.counters.discarded.fetch_add(1, std::memory_order_relaxed);
+      begun = Error{"discarded: a panic or /take/stop came before it could begin"};
     } else {
       before = begin_play(std::move(*player), file, book);
     }

@@ -77,17 +77,25 @@ Reload::End Engine::take(Draft& draft) {
   return end;
 }
 
-Result<void> Engine::change_scene(const std::string& file) {
+Result<void> Engine::change_scene(const std::string& file, std::optional<std::uint64_t> panics) {
+  const std::uint64_t asked = panics.value_or(link_.panics.load());
   auto fresh = new_stage();
   Result<void> ran = fresh->run_beside(file, *this, options_.scene_options);
   if (!ran) return ran;
   Presets::Book book = read_presets(file);
   // the stage and the presets before go at the end of this, beside the show
-  return between_ticks([&] {
+  Result<void> begun;
+  const Result<void> done = between_ticks([&] {
+    if (link_.panics.load() != asked) {
+      link_.counters.discarded.fetch_add(1, std::memory_order_relaxed);
+      begun = Error{"discarded: a panic came before it could begin"};
+      return;
+    }
     const TakenRun run = begin_run(TakeRun::Kind::scene, false, file);
     run_was_good(run, *fresh, book.list, book.file);
     play_scene(file, fresh, book);
   });
+  return done ? begun : done;
 }
 
 void Engine::play_scene(const std::string& file, std::unique_ptr<Stage>& fresh, Presets::Book& book) {

@@ -16,6 +16,7 @@ namespace limber {
 namespace {
 
 constexpr std::size_t kMostName = 100;
+constexpr int kRefusalWork = 8;  // as a refused message costs
 constexpr const char* kReplays = "a take is replayed; it takes no messages";
 constexpr const char* kPlays = "a take plays in the place of the show; /take/stop brings the hands back";
 
@@ -243,15 +244,30 @@ void Engine::replay_run(const TakeRun& run) {
   }
 }
 
-// what comes in while a take has the hands: questions are answered
+// what comes in while a take has the hands: questions are answered; as much as a tick takes
 void Engine::refuse_commands() {
-  for (; next_command_ < commands_.size(); next_command_++) {
+  for (int work = kTickWork; work > 0 && next_command_ < commands_.size(); next_command_++) {
     const Command& command = commands_[next_command_];
     for (const Message& message : command.messages) refuse_hand(message, command.origin);
     if (command.evaluate != nullptr)
       command.evaluate->answer({Evaluation::Kind::error, plays_ ? kPlays : kReplays, 0, 0, 0});
+    work -= kRefusalWork * static_cast<int>(1 + command.messages.size());
   }
   asks_ = link_.image_asks.load();
+}
+
+void Engine::refuse_urgent() {
+  link_.inbox.drain_urgent(urgent_);
+  for (const UrgentRequest& request : urgent_) {
+    overtaken_.note(request);
+    // the next pass ends the take for it
+    if (plays_ && request.kind == UrgentKind::panic) {
+      link_.inbox.push_urgent(request);
+      continue;
+    }
+    if (request.kind == UrgentKind::take_stop) link_.take_stops.fetch_add(1);
+    refuse_hand(request.message, request.origin);
+  }
 }
 
 void Engine::refuse_hand(const Message& message, const Origin& origin) {
@@ -270,11 +286,16 @@ void Engine::refuse_hand(const Message& message, const Origin& origin) {
 }
 
 void Engine::replay_messages(Hands& hands) {
-  link_.inbox.drain(commands_);
-  next_command_ = 0;
+  refuse_urgent();
+  if (next_command_ >= commands_.size()) {
+    link_.inbox.drain(commands_);
+    next_command_ = 0;
+  }
   refuse_commands();
   answers_taken_ = true;
+  hears_.reset();
   for (TakeMessage& taken : player_->messages()) {
+    if (!taken.evaluate && carry_out_event(taken.message)) continue;
     hands.begin(taken.origin);
     if (taken.evaluate) {
       Evaluate wish;

@@ -21,7 +21,7 @@ std::size_t History::bytes() const {
   std::size_t all = pages_.bytes();
   const Edits::Memory* edits = nullptr;
   for (const auto& key : keys_) {
-    all += const_cast<KeyBytes&>(key->inputs).bytes().capacity();
+    all += const_cast<KeyBytes&>(key->inputs).bytes().capacity() + key->heard.bytes();
     if (key->edits.get() != edits) all += key->edits->size();
     edits = key->edits.get();
   }
@@ -45,6 +45,7 @@ void History::drop(std::size_t number) {
 void History::forget(std::unique_ptr<Key> key) {
   key->world.release(pages_);
   key->scene.release(pages_);
+  key->heard.clear();
   key->inputs.go_on_taking(0);
   spare_.push_back(std::move(key));
 }
@@ -150,6 +151,7 @@ void History::take(Stage& stage) {
   key->edits = known_edits_.copy;
   presets_.keep(key->presets);
   key->grips = stage.dispatch.grips();
+  key->heard = heard_;
   key->inputs.begin_taking();
   pass_begins_ = 0;
   keys_.push_back(std::move(key));
@@ -186,6 +188,7 @@ void History::restore(Stage& stage, std::size_t number) {
   known_hand_ = {key.hand, hand_.version()};
   known_edits_ = {key.edits, edits_.version()};
   stage.dispatch.grips() = key.grips;
+  heard_ = key.heard;
   last_tick_ = key.tick;
   last_time_ = key.time;
   key.inputs.begin_bringing();

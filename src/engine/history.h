@@ -14,6 +14,7 @@
 #include "engine/edits.h"
 #include "engine/grips.h"
 #include "engine/hand.h"
+#include "engine/handler_queue.h"
 #include "engine/presets.h"
 #include "engine/stage.h"
 #include "engine/take.h"
@@ -45,7 +46,8 @@ class History {
   static constexpr double kApart = 1;                                ///< Simulated seconds between key states.
   static constexpr std::size_t kMostBytes = std::size_t{256} << 20;  ///< Of all of it.
 
-  History(PerformerHand& hand, Edits& edits, Presets& presets) : hand_(hand), edits_(edits), presets_(presets) {}
+  History(PerformerHand& hand, Edits& edits, Presets& presets, HandlerQueue& heard)
+      : hand_(hand), edits_(edits), presets_(presets), heard_(heard) {}
 
   /// All of it goes: what comes from here on can't be undone by going back. `why`: for who asks how far that goes.
   void begin_anew(std::string_view why);
@@ -90,6 +92,7 @@ class History {
     std::shared_ptr<const Edits::Memory> edits;
     Presets::Memory presets;
     Grips grips;
+    HandlerQueue heard;
     KeyBytes inputs;  // of the passes behind it
   };
   /// A copy, and the version of what it is a copy of.
@@ -114,6 +117,7 @@ class History {
   PerformerHand& hand_;
   Edits& edits_;
   Presets& presets_;
+  HandlerQueue& heard_;
   PageStore pages_;
   std::vector<std::unique_ptr<Key>> keys_;   // the oldest first
   std::unique_ptr<Key> held_;                // one that would have gone, without what lies behind it

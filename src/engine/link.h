@@ -10,6 +10,7 @@
 #include "base/latest.h"
 #include "engine/change_log.h"
 #include "engine/command.h"
+#include "engine/command_inbox.h"
 #include "engine/image.h"
 #include "engine/snapshot.h"
 #include "engine/traffic.h"
@@ -22,7 +23,12 @@ struct EngineLink {
   /// Datagrams that wait: what is slow to carry out takes some twenty ticks then (Engine::kTickWork).
   static constexpr std::size_t kMostCommands = 16384;
   static constexpr std::size_t kMostPanelItems = 1024;  ///< More answers than that nobody reads.
-  Inbox<Command> inbox{kMostCommands, kMostBytes};
+  CommandInbox inbox{kMostCommands, kMostBytes};
+  /// Set by a signal handler: a panic is requested, like an urgent message.
+  std::atomic<bool> panic_signal{false};
+  /// Panics and ends of takes so far: a scene or a take that was asked for before one of them doesn't begin after it.
+  std::atomic<std::uint64_t> panics{0};
+  std::atomic<std::uint64_t> take_stops{0};
   Inbox<Outgoing> outbox{kMostItems, kMostBytes};
   Inbox<Outgoing> query_outbox{kMostItems, kMostBytes};       ///< Answers to Hand::query.
   Inbox<Outgoing> panel_outbox{kMostPanelItems, kMostBytes};  ///< Answers to Hand::panel.

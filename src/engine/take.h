@@ -24,6 +24,9 @@ namespace limber {
 inline constexpr int kTakeVersion = 4;
 inline constexpr int kTakeComparable = 3;
 inline constexpr int kTakeKeepsTimers = 4;
+/// Rules of the engine that a replay follows. 1: a handler that failed is disabled, a panic has a first second,
+/// handlers have a budget; 0: takes of before.
+inline constexpr int kTakeRules = 1;
 /// The file's first line; the second is JSON that people can read. Frames follow.
 inline constexpr const char* kTakeHead = "limber take ";
 
@@ -101,6 +104,20 @@ struct TakeMessage {
   bool evaluate = false;  ///< `message.address` is the text.
 };
 
+/// An input that the engine derives from real time, kept among the messages of a tick (with an empty address) so that a
+/// replay has it too.
+struct TakeEvent {
+  enum class Kind : std::uint8_t {
+    panic_settled = 1,  ///< The first second of a panic is over.
+    heard = 2,          ///< Handlers heard `value` of the waiting messages in this tick; without it, all of them.
+  };
+  Kind kind = Kind::heard;
+  std::uint64_t value = 0;
+};
+Message message_of(const TakeEvent& event);
+/// None: it is a message.
+std::optional<TakeEvent> event_of(const Message& message);
+
 /// Everything that reached the simulation in one tick, or while time stood still, and what came of it.
 struct TakeTick {
   bool running = false;  ///< Time went on.
@@ -125,6 +142,7 @@ struct TakeHeader {
   std::string limber;  ///< Version and commit.
   std::string scene;
   std::string recorded;  ///< Date and time.
+  int rules = kTakeRules;
 };
 
 }  // namespace limber

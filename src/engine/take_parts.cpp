@@ -101,9 +101,27 @@ constexpr std::uint8_t kRunning = 1, kRuns = 2, kMessages = 4, kStopped = 8, kSt
 
 }  // namespace
 
+Message message_of(const TakeEvent& event) {
+  return {"", {Arg::of(static_cast<double>(event.kind)), Arg::of(static_cast<double>(event.value))}};
+}
+
+std::optional<TakeEvent> event_of(const Message& message) {
+  if (!message.address.empty() || message.args.size() != 2) return std::nullopt;
+  if (!message.args[0].is_numeric() || !message.args[1].is_numeric()) return std::nullopt;
+  const double value = message.args[1].number;
+  if (!(value >= 0 && value <= 1e9)) return std::nullopt;
+  for (const auto kind : {TakeEvent::Kind::panic_settled, TakeEvent::Kind::heard}) {
+    if (message.args[0].number == static_cast<double>(kind)) return TakeEvent{kind, static_cast<std::uint64_t>(value)};
+  }
+  return std::nullopt;
+}
+
 std::string head_text(const TakeHeader& header) {
-  const nlohmann::ordered_json json = {
-      {"version", header.version}, {"limber", header.limber}, {"scene", header.scene}, {"recorded", header.recorded}};
+  const nlohmann::ordered_json json = {{"version", header.version},
+                                       {"limber", header.limber},
+                                       {"scene", header.scene},
+                                       {"recorded", header.recorded},
+                                       {"rules", header.rules}};
   using Json = nlohmann::ordered_json;
   return fmt::format("{}{}\n{}\n", kTakeHead, header.version,
                      json.dump(-1, ' ', false, Json::error_handler_t::replace));
@@ -129,6 +147,8 @@ Result<TakeHeader> header_of(std::string_view first_line, std::string_view secon
   header.limber = text("limber");
   header.scene = text("scene");
   header.recorded = text("recorded");
+  const auto rules = json.find("rules");
+  header.rules = rules != json.end() && rules->is_number_integer() ? rules->get<int>() : 0;
   return header;
 }
 

@@ -35,6 +35,8 @@ class TakePlayer {
   bool current_scripts() const { return current_; }
   /// Whether saves kept timers when it was recorded.
   bool keeps_timers() const { return reader_->header().version >= kTakeKeepsTimers; }
+  /// See kTakeRules.
+  int rules() const { return reader_->header().rules; }
   /// Goes on to the next tick; false: there is none, or the runs have parted and nothing more is to be found out.
   bool next();
   /// Whether time goes on in the tick that next() will bring.

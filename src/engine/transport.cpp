@@ -30,6 +30,7 @@ const Table& Transport::table() {
           act<&Transport::act_rewind_ticks>(action("rewind_ticks", 1, 1, "So many ticks back.")),
           act<&Transport::act_reset>(action("reset", 0, 0, "The scene from its start, with the performer's values.")),
           act<&Transport::act_panic>(action("panic", 0, 0, Panic::kDoc)),
+          act<&Transport::act_panic_end>(action("panic_end", 0, 0, "Ends a panic, whenever it began.")),
           live(readout(number("speed_reached", "× real time", 1, 0, kUnbounded,
                               "Simulated seconds per real second, over the last half second."))),
           live(readout(number("rewindable", "s", 0, 0, kUnbounded, "How far back a rewind can go."))),
@@ -101,6 +102,11 @@ Result<void> Transport::act_panic(std::span<const double>) {
   return {};
 }
 
+Result<void> Transport::act_panic_end(std::span<const double>) {
+  world_.ask_panic_end();
+  return {};
+}
+
 Result<void> Transport::act_rewind(std::span<const double> args) {
   if (!(args[0] > 0)) return Error{"rewind takes the seconds to go back, more than 0"};
   back_ = Back{args[0]};
@@ -126,6 +132,13 @@ const Table& CounterNode::table() {
                                counter("dropped_kernel", "Datagrams lost by the kernel: its buffer was full."),
                                counter("sent", "Datagrams sent."),
                                counter("unsent", "Datagrams that the system did not take, or that came back."),
+                               counter("discarded",
+                                       "Requests (play, step, ...) that a later panic, pause or end of a "
+                                       "take overtook: they were left out."),
+                               counter("unheard",
+                                       "Messages that osc:on handlers missed: more waited than they are "
+                                       "given time for."),
+                               counter("disabled", "Handlers (osc:on) that failed: disabled until the scene is saved."),
                            });
   return table;
 }
@@ -136,8 +149,9 @@ CounterNode::CounterNode(Store& store, const Counters& counters)
 void CounterNode::tell() {
   // in the rows' order
   const Counters& c = counters_;
-  const std::atomic<std::uint64_t>* const all[] = {&c.received, &c.malformed, &c.denied,         &c.unknown, &c.refused,
-                                                   &c.clamped,  &c.dropped,   &c.dropped_kernel, &c.sent,    &c.unsent};
+  const std::atomic<std::uint64_t>* const all[] = {
+      &c.received,       &c.malformed, &c.denied, &c.unknown,   &c.refused, &c.clamped, &c.dropped,
+      &c.dropped_kernel, &c.sent,      &c.unsent, &c.discarded, &c.unheard, &c.disabled};
   double* out = store_.live_block(id_);
   for (const auto* count : all) *out++ = static_cast<double>(count->load(std::memory_order_relaxed));
 }

@@ -41,6 +41,7 @@ class Transport {
   Result<void> act_step(std::span<const double> args);
   Result<void> act_reset(std::span<const double> args);
   Result<void> act_panic(std::span<const double> args);
+  Result<void> act_panic_end(std::span<const double> args);
   Result<void> act_rewind(std::span<const double> args);
   Result<void> act_rewind_ticks(std::span<const double> args);
   void set_paused(bool paused);

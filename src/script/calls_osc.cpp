@@ -4,6 +4,7 @@
 #include "base/address.h"
 #include "base/text.h"
 #include "script/context.h"
+#include "script/guard.h"
 
 namespace limber::calls {
 
@@ -103,6 +104,13 @@ std::int32_t osc_address(void* c, const char* text, std::int32_t length) {
 }
 
 void osc_handlers(void* c, std::int32_t count) { context_of(c).handlers = count; }
+
+std::int32_t disable_handler(void* c) {
+  ScriptContext& context = context_of(c);
+  if (!context.guard->limits().disable_failed_handlers) return 0;
+  context.disabled_handlers++;
+  return 1;
+}
 
 void osc_listen(void* c, std::int32_t port) {
   context_of(c).plan.listen.push_back({"127.0.0.1", static_cast<std::uint16_t>(port)});

@@ -81,7 +81,8 @@ struct ScriptContext {
   OscPlan plan;
   Origin sender;  ///< Of the message that is handled now.
   bool handling_message = false;
-  std::int32_t handlers = 0;  ///< Registered by osc:on.
+  std::int32_t handlers = 0;           ///< Registered by osc:on.
+  std::int32_t disabled_handlers = 0;  ///< Of these: failed or were stopped.
   std::unique_ptr<ParamsNode> params;
   NodeId params_of_show;            ///< Of an earlier run, which has none itself: those of the run that plays, or none.
   std::uint64_t rerun_rows = 0;     ///< Parameters with `rerun`, a bit a row.

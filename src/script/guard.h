@@ -54,6 +54,7 @@ class Guard {
 
   /// From the next call on, these limits hold.
   void limit(const ScriptLimits& limits);
+  const ScriptLimits& limits() const { return limits_; }
 
   /// Registry references of functions of the prelude: the message handler; the fault of a call that was stopped
   /// without an error coming out; what is to be done after a failure.

@@ -68,6 +68,8 @@ void Scene::tick(double dt) {
 
 bool Scene::listens() const { return context_->handlers > 0; }
 
+std::size_t Scene::disabled_handlers() const { return static_cast<std::size_t>(context_->disabled_handlers); }
+
 bool Scene::message(const Message& message, const Origin& origin) {
   if (!listens()) return false;
   ScriptContext& c = *context_;

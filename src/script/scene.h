@@ -67,6 +67,8 @@ class Scene {
   void tick(double dt);
   /// Whether any osc:on handler is registered.
   bool listens() const;
+  /// Handlers that failed or were stopped: they are disabled until the next good run of the scene.
+  std::size_t disabled_handlers() const;
   /// Calls the osc:on handlers that fit, in order of registration; false when none does.
   bool message(const Message& message, const Origin& origin);
   /// After each tick: about 100 µs at most, nothing while there is little to collect.

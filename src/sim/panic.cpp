@@ -15,6 +15,7 @@ void Panic::turn(bool on) {
   static const Row& told = World::table().at("panicked");
   if (on_ == on) return;
   on_ = on;
+  settled_ = false;
   began_ = world_.tick();
   world_.store().tell(world_.id(), told)[0] = on ? 1 : 0;
   world_.bullet().wake_all();

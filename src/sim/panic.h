@@ -23,14 +23,17 @@ class Panic {
   static constexpr double kSink = 0.1;
 
   static constexpr const char* kDoc =
-      "All comes to rest: behaviours, morphs, forces and the scene's callbacks stop. Once more: back to the newest "
-      "good moment.";
+      "All comes to rest: behaviours, morphs, forces and the scene's callbacks stop. Once more, after the first "
+      "second: back to the newest good moment.";
 
   explicit Panic(World& world) : world_(world) {}
 
   bool on() const { return on_; }
   /// The world's tick when it began, while it holds.
   std::uint64_t began() const { return began_; }
+  /// Whether its first second is over, in which another request is ignored.
+  bool settled() const { return settled_; }
+  void settle() { settled_ = true; }
   /// Behaviours don't act and forces are lost until end(); motors do what `panic_motors` says.
   void begin();
   /// Everything acts again as it is set.
@@ -53,6 +56,7 @@ class Panic {
 
   World& world_;
   bool on_ = false;
+  bool settled_ = false;
   std::uint64_t began_ = 0;
 };
 

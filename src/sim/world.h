@@ -111,6 +111,12 @@ class World {
   void ask_panic() { panic_asked_ = true; }
   /// Whether sim:panic or /transport/panic asked since the last call; several times are one.
   bool take_panic_request() { return std::exchange(panic_asked_, false); }
+  /// /transport/panic_end: drops an earlier request for a panic in the same tick.
+  void ask_panic_end() {
+    panic_asked_ = false;
+    panic_end_asked_ = true;
+  }
+  bool take_panic_end_request() { return std::exchange(panic_end_asked_, false); }
   Panic& panic() { return panic_; }
   const Panic& panic() const { return panic_; }
   /// Removes every behaviour, body and shape; the world's own rows return to their defaults.
@@ -198,6 +204,7 @@ class World {
   std::uint64_t health_events_ = 0;
   bool reset_asked_ = false;
   bool panic_asked_ = false;
+  bool panic_end_asked_ = false;
   bool healed_ = false;                // a body, in this tick
   std::size_t overlaps_reported_ = 0;  // since log_overlaps()
   std::string overlap_text_;           // the first of them

@@ -45,8 +45,8 @@ void WorldKey::release(PageStore& pages) {
 
 void WorldKey::pass(KeyBytes& key, World& world) {
   key.pass_all(world.tick_, world.health_events_, world.reset_asked_, world.healed_, world.panic_.on_,
-               world.panic_.began_, world.panic_asked_, world.gears_changed_, world.timestep_since_, world.time_then_,
-               world.tick_then_);
+               world.panic_.settled_, world.panic_.began_, world.panic_asked_, world.panic_end_asked_,
+               world.gears_changed_, world.timestep_since_, world.time_then_, world.tick_then_);
   pass(key, world.store());
   key.pass_all(world.contacts_.reporting_, world.contacts_.pairs_, world.contacts_.begun_, world.camera_moves_.state_);
   pass_loads(key, world);

@@ -43,12 +43,12 @@ TEST(Desk, UndoesWhatAnyHandHasSet) {
 TEST(Desk, MessagesAreThePanelsHand) {
   EngineLink link;
   Desk desk(link);
-  desk.send("/transport/pause");
+  desk.send("/transport/play");
   std::vector<Command> commands;
   link.inbox.drain(commands);
   ASSERT_EQ(commands.size(), 1u);
   EXPECT_EQ(commands[0].origin.hand, Hand::panel);
-  EXPECT_EQ(commands[0].messages.at(0).address, "/transport/pause");
+  EXPECT_EQ(commands[0].messages.at(0).address, "/transport/play");
 }
 
 TEST(Desk, ImagesAreAskedForTwentyTimesASecondAtMost) {

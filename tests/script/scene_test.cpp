@@ -141,11 +141,20 @@ osc:on("/a", function() print("heard") nothing() end)
   EXPECT_EQ(stage.host.faults[0].file, "scripts/scene.lua");
   EXPECT_EQ(stage.host.faults[0].line, 2);
   EXPECT_EQ(first_line(stage.host.faults[0].text), "scripts/scene.lua:2: broken");
-  // an OSC handler tries again with the next message
-  EXPECT_TRUE(stage.scene.message({"/a", {}}, {}));
-  EXPECT_TRUE(stage.scene.message({"/a", {}}, {}));
-  EXPECT_EQ(stage.host.faults.size(), 3u);
-  EXPECT_EQ(stage.host.printed.size(), 6u);
+}
+
+TEST(Scene, AHandlerThatFailsIsDisabledAndReportedOnce) {
+  Stage stage;
+  ASSERT_EQ(stage.play(R"(
+osc:on("/a", function() print("one") nothing() end)
+osc:on("/*", function() print("two") end)
+)"),
+            "");
+  for (int i = 0; i < 3; i++) EXPECT_TRUE(stage.scene.message({"/a", {}}, {})) << "a disabled handler still counts";
+  EXPECT_EQ(stage.host.printed, (Lines{"one", "two", "two", "two"}));
+  ASSERT_EQ(stage.host.faults.size(), 1u);
+  EXPECT_EQ(stage.host.faults[0].line, 2);
+  EXPECT_EQ(stage.scene.disabled_handlers(), 1u);
 }
 
 TEST(Scene, WhatIsRegisteredMeanwhileHasItsTurnNextTime) {

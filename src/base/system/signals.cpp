@@ -51,6 +51,8 @@ void handle_signal_at_once(int signal, SignalHandler handler) {
   (own == nullptr ? &sigaction : own)(signal, &action, nullptr);
 }
 
+void on_user_signal(SignalHandler handler) { handle_signal_at_once(SIGUSR2, handler); }
+
 void block_signal(int signal) {
   sigset_t set;
   sigemptyset(&set);

@@ -30,6 +30,8 @@ void handle_signal(int signal, SignalHandler handler);
 /// The same, but the handler runs at any instruction, and system calls continue afterwards. Bypasses sanitizers, which
 /// delay handlers until the next intercepted call. [any]
 void handle_signal_at_once(int signal, SignalHandler handler);
+/// Calls the handler at SIGUSR2, at any instruction of any thread; system calls continue afterwards. [main]
+void on_user_signal(SignalHandler handler);
 /// Keeps a signal out, except in wait_ready_or_signal(). [the thread]
 void block_signal(int signal);
 

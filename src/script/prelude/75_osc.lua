@@ -160,7 +160,8 @@ P.osc = setmetatable({}, {
 
 P.on_failure[#P.on_failure + 1] = function() api.osc_handlers(ctx, #handlers) end
 
--- every handler whose pattern fits hears it; one that errs hears the next message again
+-- Calls every handler whose pattern matches. One that fails or is stopped is reported and disabled; its messages still
+-- count as heard.
 function P.entry.message(address, sender, ...)
   local heard = false
   local outer_address, outer_sender = address_now, sender_now
@@ -170,7 +171,10 @@ function P.entry.message(address, sender, ...)
     local pattern = entry.pattern
     if pattern == address or api.osc_matches(ctx, pattern, #pattern, address, #address) ~= 0 then
       heard = true
-      if not P.guarded(entry.f, ...) then api.report(ctx) end
+      if not entry.off and not P.guarded(entry.f, ...) then
+        api.report(ctx)
+        entry.off = api.disable_handler(ctx) ~= 0
+      end
     end
   end
   address_now, sender_now = outer_address, outer_sender

@@ -1,6 +1,6 @@
 -- Scripts that fail: what a failing callback had changed and drawn is taken back, a failing behavior rests.
 --@ ticks 90
---@ faults 3
+--@ faults 2
 --@ 20 send /bad 3
 --@ 40 send /bad 5
 local ball = sim:add_sphere_shape("ball", 0.1)

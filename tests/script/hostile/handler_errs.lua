@@ -1,7 +1,5 @@
--- A handler that errs tries again with the next message; what it answered is not sent.
--- expect: 9: late
--- expect: 9: late
--- expect: 9: late
+-- A handler that fails is disabled and reported once; what it answered is not sent.
+-- expect: 7: late
 -- messages: 3
 -- sent: 0
 osc:on("/hit", function()

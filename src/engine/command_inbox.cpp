@@ -1,0 +1,66 @@
+// Urgent requests leave their command.
+#include "engine/command_inbox.h"
+
+#include <algorithm>
+
+namespace limber {
+
+bool CommandInbox::push(Command command) {
+  if (command.arrival == 0) command.arrival = arrive();
+  const bool urgent =
+      std::ranges::any_of(command.messages, [](const Message& m) { return urgent_kind(m).has_value(); });
+  if (urgent) {
+    move_urgent(command);
+    if (command.messages.empty() && command.evaluate == nullptr) return true;
+  }
+  return waiting_.push(std::move(command));
+}
+
+void CommandInbox::move_urgent(Command& command) {
+  std::vector<Message> rest;
+  for (Message& message : command.messages) {
+    const std::optional<UrgentKind> kind = urgent_kind(message);
+    if (!kind) {
+      rest.push_back(std::move(message));
+      continue;
+    }
+    discarded_ += std::erase_if(rest, [&](const Message& before) { return Overtaken::discards(before, *kind); });
+    push_urgent({*kind, std::move(message), command.origin, command.arrival});
+  }
+  command.messages = std::move(rest);
+}
+
+void CommandInbox::push_urgent(UrgentRequest request) {
+  const std::scoped_lock lock(urgent_mutex_);
+  const auto same = [&](const UrgentRequest& other) {
+    return other.kind == request.kind && other.origin == request.origin;
+  };
+  const auto same_kind = [&](const UrgentRequest& other) { return other.kind == request.kind; };
+  auto older = std::ranges::find_if(urgent_, same);
+  if (older == urgent_.end() && urgent_.size() >= kMostUrgent) older = std::ranges::find_if(urgent_, same_kind);
+  // the lane is full of other kinds, so one of these has a later request of its kind
+  if (older == urgent_.end() && urgent_.size() >= kMostUrgent) {
+    older = std::ranges::find_if(urgent_, [&](const UrgentRequest& candidate) {
+      return std::ranges::count(urgent_, candidate.kind, &UrgentRequest::kind) > 1;
+    });
+  }
+  if (older != urgent_.end()) urgent_.erase(older);
+  urgent_.push_back(std::move(request));
+  urgent_count_.store(urgent_.size(), std::memory_order_relaxed);
+}
+
+void CommandInbox::drain_urgent(std::vector<UrgentRequest>& out) {
+  out.clear();
+  if (urgent_count_.load(std::memory_order_relaxed) == 0) return;
+  const std::scoped_lock lock(urgent_mutex_);
+  urgent_.swap(out);
+  urgent_count_.store(0, std::memory_order_relaxed);
+}
+
+bool CommandInbox::waits(UrgentKind kind) {
+  if (urgent_count_.load(std::memory_order_relaxed) == 0) return false;
+  const std::scoped_lock lock(urgent_mutex_);
+  return std::ranges::any_of(urgent_, [&](const UrgentRequest& request) { return request.kind == kind; });
+}
+
+}  // namespace limber
