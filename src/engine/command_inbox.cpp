@@ -5,18 +5,18 @@
 
 namespace limber {
 
-bool CommandInbox::push(Command command) {
+bool CommandInbox::push(Command command, bool urgent_pushed) {
   if (command.arrival == 0) command.arrival = arrive();
   const bool urgent =
       std::ranges::any_of(command.messages, [](const Message& m) { return urgent_kind(m).has_value(); });
   if (urgent) {
-    move_urgent(command);
+    move_urgent(command, urgent_pushed);
     if (command.messages.empty() && command.evaluate == nullptr) return true;
   }
   return waiting_.push(std::move(command));
 }
 
-void CommandInbox::move_urgent(Command& command) {
+void CommandInbox::move_urgent(Command& command, bool urgent_pushed) {
   std::vector<Message> rest;
   for (Message& message : command.messages) {
     const std::optional<UrgentKind> kind = urgent_kind(message);
@@ -25,6 +25,7 @@ void CommandInbox::move_urgent(Command& command) {
       continue;
     }
     discarded_ += std::erase_if(rest, [&](const Message& before) { return Overtaken::discards(before, *kind); });
+    if (urgent_pushed) continue;
     push_urgent({*kind, std::move(message), command.origin, command.arrival});
   }
   command.messages = std::move(rest);

@@ -23,7 +23,8 @@ class CommandInbox {
 
   /// Urgent requests move to their lane, and messages before them in the command that they discard are removed. False:
   /// there is no room for the rest of the command; its messages are dropped and counted. [any]
-  bool push(Command command);
+  /// `urgent_pushed`: push_urgent() has them already.
+  bool push(Command command, bool urgent_pushed = false);
   /// An urgent request that was recognized before the rest of its packet was decoded. [any]
   void push_urgent(UrgentRequest request);
   /// Swaps the waiting commands into `out` (cleared first, its memory reused). [sim]
@@ -40,7 +41,7 @@ class CommandInbox {
   std::uint64_t fetch_discarded() { return discarded_.exchange(0, std::memory_order_relaxed); }
 
  private:
-  void move_urgent(Command& command);
+  void move_urgent(Command& command, bool urgent_pushed);
 
   Inbox<Command> waiting_;
   std::mutex urgent_mutex_;

@@ -295,7 +295,10 @@ void Engine::replay_messages(Hands& hands) {
   answers_taken_ = true;
   hears_.reset();
   for (TakeMessage& taken : player_->messages()) {
-    if (!taken.evaluate && carry_out_event(taken.message)) continue;
+    if (!taken.evaluate && carry_out_event(taken.message)) {
+      history_.note(taken.message, taken.origin);
+      continue;
+    }
     hands.begin(taken.origin);
     if (taken.evaluate) {
       Evaluate wish;

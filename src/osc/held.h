@@ -27,6 +27,11 @@ class HeldCommands {
 
   explicit HeldCommands(const NetClock& clock) : clock_(clock) {}
 
+  /// Whether a time tag is ahead of now, and not by too much. [any]
+  bool waits(std::uint64_t time_tag) const {
+    const std::uint64_t now = clock_.ntp();
+    return time_tag > now && time_tag - now <= kFarthest;
+  }
   /// Moves from `command` only when the verdict is `held`.
   Verdict offer(std::uint64_t time_tag, Command& command);
   /// The next command that is due, or nothing.

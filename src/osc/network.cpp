@@ -204,14 +204,19 @@ void Network::aim_at_subscribers() {
 }
 
 bool Network::take(const Origin& origin, std::string packet) {
-  if (!packets_.push({origin, std::move(packet)})) return false;
+  const Receiver::Scanned scanned = receiver_.scan(packet.data(), packet.size(), origin);
+  if (scanned.urgent) link_.wake_engine();
+  if (!packets_.push({origin, std::move(packet), scanned})) {
+    link_.counters.dropped.fetch_add(1, std::memory_order_relaxed);
+    return false;
+  }
   wake_->notify();
   return true;
 }
 
 void Network::take_packets() {
   packets_.drain(taken_);
-  for (const Packet& p : taken_) receiver_.take(p.bytes.data(), p.bytes.size(), p.origin);
+  for (const Packet& p : taken_) receiver_.take(p.bytes.data(), p.bytes.size(), p.origin, p.scanned);
 }
 
 void Network::pong(const Origin& to) {

@@ -39,7 +39,7 @@ class Network {
   void stop();
 
   /// A packet that came by another way than UDP: looked at and carried out like one that did. Answers go by
-  /// EngineLink::push_out. False: too many wait. [any]
+  /// EngineLink::push_out. False: too many wait; its urgent requests are with the engine all the same. [any]
   bool take(const Origin& origin, std::string packet);
 
   /// "OSC in 127.0.0.1:9003", "OSC out 127.0.0.1:9005 (pos+rot+relrot at 60 Hz)": what is open now. [any]
@@ -64,6 +64,7 @@ class Network {
   struct Packet {
     Origin origin;
     std::string bytes;
+    Receiver::Scanned scanned;
     friend std::size_t weight_of(const Packet& p) { return sizeof p + p.bytes.capacity(); }
   };
 

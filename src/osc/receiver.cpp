@@ -9,6 +9,7 @@
 #include "base/log.h"
 #include "base/text.h"
 #include "osc/decode.h"
+#include "osc/packet_walk.h"
 #include "osc/subscribers.h"
 #include "osc/validate.h"
 
@@ -18,6 +19,8 @@ namespace {
 
 constexpr int kRounds = 64;
 constexpr int kReceiveBuffer = 4 << 20;
+constexpr std::size_t kRawCost = 256;  // of a datagram, beside its bytes
+constexpr const char* kTooFast = "OSC comes in faster than the simulation takes it: messages are dropped";
 constexpr const char* kCure = "choose another with --osc-in ADDR:PORT, or play without with --osc-optional";
 
 std::size_t slot_of(const Endpoint& e) { return (e.ip * 2654435761u ^ e.port * 40503u) >> 7; }
@@ -114,10 +117,56 @@ void Receiver::receive(int fd) {
 
 void Receiver::take_from(Listening& socket, const char* data, std::size_t size, const Endpoint& from) {
   known_[slot_of(from) % kKnown] = {from, socket.socket.fd()};
-  take(data, size, from);
+  const Scanned scanned = scan(data, size, {Hand::osc, from.ip, from.port});
+  pushed_ = pushed_ || scanned.urgent;
+  if (raw_.size() < kMostRaw && raw_bytes_ + size <= kMostRawBytes) {
+    raw_.push_back({{data, size}, from, scanned});
+    raw_bytes_ += size;
+    return;
+  }
+  link_.counters.dropped.fetch_add(1, std::memory_order_relaxed);
+  warn_seldom(inbox_full_, [] { return kTooFast; });
 }
 
-void Receiver::take(const char* data, std::size_t size, Origin origin) {
+namespace {
+
+// whether a valid packet has an urgent address
+struct UrgentAddresses {
+  bool any = false;
+  static void bundle(int, std::uint64_t) {}
+  void message(const char* address, const char*) { any = any || urgent_address(address).has_value(); }
+  static void argument(char, const char*) {}
+  static void end_message() {}
+};
+
+}  // namespace
+
+Receiver::Scanned Receiver::scan(const char* data, std::size_t size, const Origin& origin) const {
+  Scanned scanned{link_.inbox.arrive(), false};
+  UrgentAddresses addresses;
+  if (!allowed(origin.ip) || PacketWalk<UrgentAddresses>(addresses).packet(data, size) != nullptr || !addresses.any)
+    return scanned;
+  Result<Decoded> decoded = decode_packet(data, size);
+  if (!decoded || held_.waits(decoded->time_tag)) return scanned;
+  scanned.urgent = true;
+  for (Message& message : decoded->messages) {
+    if (const std::optional<UrgentKind> kind = urgent_kind(message))
+      link_.inbox.push_urgent({*kind, std::move(message), origin, scanned.arrival});
+  }
+  return scanned;
+}
+
+void Receiver::decode_some() {
+  for (std::size_t bytes = 0; !raw_.empty() && bytes < kDecodedBytes;) {
+    const Raw raw = std::move(raw_.front());
+    raw_.pop_front();
+    raw_bytes_ -= raw.bytes.size();
+    bytes += raw.bytes.size() + kRawCost;
+    take(raw.bytes.data(), raw.bytes.size(), {Hand::osc, raw.from.ip, raw.from.port}, raw.scanned);
+  }
+}
+
+void Receiver::take(const char* data, std::size_t size, Origin origin, Scanned scanned) {
   const Endpoint from{origin.ip, origin.port};
   if (!allowed(from.ip)) {
     link_.counters.denied.fetch_add(1, std::memory_order_relaxed);
@@ -147,7 +196,8 @@ void Receiver::take(const char* data, std::size_t size, Origin origin) {
     return true;
   });
   origin.follows = origin.follows || answers_.follows(origin);
-  if (!decoded->messages.empty()) deliver(decoded->time_tag, {std::move(decoded->messages), origin});
+  if (!decoded->messages.empty())
+    deliver(decoded->time_tag, {std::move(decoded->messages), origin, nullptr, scanned.arrival}, scanned.urgent);
 }
 
 void Receiver::note_traffic(const Origin& origin, const Decoded& packet) {
@@ -156,8 +206,9 @@ void Receiver::note_traffic(const Origin& origin, const Decoded& packet) {
   for (const RefusedMessage& refused : packet.refused) link_.traffic.note(true, end, {refused.address, {}});
 }
 
-void Receiver::deliver(std::uint64_t time_tag, Command command) {
-  switch (held_.offer(time_tag, command)) {
+// what was found due by scan() is due, whatever the clock says now
+void Receiver::deliver(std::uint64_t time_tag, Command command, bool urgent_pushed) {
+  switch (urgent_pushed ? HeldCommands::Verdict::now : held_.offer(time_tag, command)) {
     case HeldCommands::Verdict::held:
       return;
     case HeldCommands::Verdict::far:
@@ -177,22 +228,26 @@ void Receiver::deliver(std::uint64_t time_tag, Command command) {
     case HeldCommands::Verdict::now:
       break;
   }
-  push(std::move(command));
+  push(std::move(command), urgent_pushed);
 }
 
 void Receiver::release_due() {
-  while (std::optional<Command> command = held_.due()) push(std::move(*command));
+  decode_some();
+  while (std::optional<Command> command = held_.due()) {
+    command->arrival = 0;  // it arrives now
+    push(std::move(*command));
+  }
   if (std::exchange(pushed_, false)) link_.wake_engine();
 }
 
-void Receiver::push(Command command) {
+void Receiver::push(Command command, bool urgent_pushed) {
   const std::size_t count = command.messages.size();
-  if (link_.inbox.push(std::move(command))) {
+  if (link_.inbox.push(std::move(command), urgent_pushed)) {
     pushed_ = true;
     return;
   }
   link_.counters.dropped.fetch_add(count, std::memory_order_relaxed);
-  warn_seldom(inbox_full_, [] { return "OSC comes in faster than the simulation takes it: messages are dropped"; });
+  warn_seldom(inbox_full_, [] { return kTooFast; });
 }
 
 void Receiver::refuse(const Origin& origin, const std::string& address, const std::string& text) {

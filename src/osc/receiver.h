@@ -1,9 +1,11 @@
 // The receiver: listening sockets, and the way of a datagram: allowed, whole, decoded, then now or when it is due into
-// the engine's inbox, all messages of a datagram as one command.
+// the engine's inbox, all messages of a datagram as one command. Sockets are read ahead of decoding, so that urgent
+// requests (engine/urgent.h) reach the engine however much waits before them.
 #pragma once
 
 #include <array>
 #include <cstdint>
+#include <deque>
 #include <functional>
 #include <memory>
 #include <optional>
@@ -48,18 +50,31 @@ class Receiver {
   std::vector<int> descriptors() const;
   std::vector<Endpoint> bound() const;
 
+  /// What is known of a packet before it is decoded.
+  struct Scanned {
+    std::uint64_t arrival = 0;  ///< As Command::arrival; 0: the inbox numbers it.
+    bool urgent = false;        ///< Its urgent requests are with the engine.
+  };
+  static constexpr std::size_t kMostRaw = 16384;  ///< Datagrams that wait to be decoded.
+  static constexpr std::size_t kMostRawBytes = std::size_t{16} << 20;
+  static constexpr std::size_t kDecodedBytes = std::size_t{256} << 10;  ///< Of a call.
+
   /// Reads what waits in the socket, at most a thousand datagrams, so that streams get their turn. Call release_due()
   /// after it.
   void receive(int fd);
+  /// Gives the engine a packet's urgent requests, unless it is denied, invalid or dated ahead of now. [any]
+  Scanned scan(const char* data, std::size_t size, const Origin& origin) const;
   /// One datagram, as if it had come in by a socket. The fuzz target begins here.
   void take(const char* data, std::size_t size, const Endpoint& from) {
     take(data, size, {Hand::osc, from.ip, from.port});
   }
   /// A packet that came by another way.
-  void take(const char* data, std::size_t size, Origin origin);
-  /// Gives the engine the held bundles that are due, and wakes it when anything came since the last call.
+  void take(const char* data, std::size_t size, Origin origin) { take(data, size, origin, {}); }
+  void take(const char* data, std::size_t size, Origin origin, Scanned scanned);
+  /// Decodes some of what was read, gives the engine the held bundles that are due, and wakes it when anything came
+  /// since the last call.
   void release_due();
-  std::optional<std::int64_t> wait() const { return held_.wait(); }
+  std::optional<std::int64_t> wait() const { return raw_.empty() ? held_.wait() : 0; }
 
   /// The listening socket by which this sender's last message came, so that the answer comes from where the question
   /// went; -1 when it is forgotten.
@@ -75,9 +90,10 @@ class Receiver {
 
   std::optional<std::string> open(const ListenAddress& address);
   void take_from(Listening& socket, const char* data, std::size_t size, const Endpoint& from);
+  void decode_some();
   void note_traffic(const Origin& origin, const Decoded& packet);
-  void deliver(std::uint64_t time_tag, Command command);
-  void push(Command command);
+  void deliver(std::uint64_t time_tag, Command command, bool urgent_pushed);
+  void push(Command command, bool urgent_pushed = false);
   void refuse(const Origin& origin, const std::string& address, const std::string& text);
   void note_kernel_drops(Listening& socket, std::uint32_t count);
   bool allowed(std::uint32_t ip) const;
@@ -91,6 +107,13 @@ class Receiver {
   HeldCommands held_;
   std::vector<std::unique_ptr<Listening>> sockets_;
   system::DatagramReader reader_;
+  struct Raw {
+    std::string bytes;
+    Endpoint from;
+    Scanned scanned;
+  };
+  std::deque<Raw> raw_;  // read, not yet decoded
+  std::size_t raw_bytes_ = 0;
   std::array<Known, kKnown> known_{};
   bool pushed_ = false;  // since the engine was woken
   bool said_buffer_ = false;
