@@ -202,7 +202,8 @@ void Engine::run() {
     } else if (wait_for_tick()) {
       pace();
       pass(true);
-    } else if (commands_wait_.exchange(false, std::memory_order_relaxed) || link_.panic_signal.load()) {
+    } else if (commands_wait_.exchange(false, std::memory_order_relaxed) || link_.panic_signal.load() ||
+               !heard_.empty()) {
       pass(false);
     }
   }
