@@ -677,7 +677,7 @@ function sim:at(time, f) end
 ---The scene from its start, with the performer's values.
 function sim:reset() end
 
----All comes to rest: behaviours, morphs, forces and the scene's callbacks stop. Once more: back to the newest good moment.
+---All comes to rest: behaviours, morphs, forces and the scene's callbacks stop. Once more, after the first second: back to the newest good moment.
 function sim:panic() end
 
 ---Text that is the same when the world is the same to the bit.
