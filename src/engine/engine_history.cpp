@@ -29,7 +29,7 @@ Outcome Engine::go_back(const Transport::Back& back, const Origin& origin) {
   World& world = stage_->world;
   const std::uint64_t tick = world.tick();
   const double time = world.time();
-  if (history_.empty() || tick <= history_.oldest_tick()) {
+  if (!history_.fits(*stage_) || tick <= history_.oldest_tick()) {
     return Outcome::refused(fmt::format("time can't go back: {}", history_.why()));
   }
   PastGoal goal;
@@ -131,7 +131,7 @@ void Engine::do_again(PastPass& pass) {
 
 bool Engine::return_before(std::uint64_t tick) {
   const PresetList presets = presets_.list();
-  if (!history_.return_before(*stage_, tick)) return false;
+  if (!history_.fits(*stage_) || !history_.return_before(*stage_, tick)) return false;
   presets_.take_list(presets);
   heard_.clear();
   wishes_.clear();

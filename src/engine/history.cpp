@@ -36,6 +36,13 @@ void History::begin_anew(std::string_view why) {
   too_large_ = false;
 }
 
+// key states list what there is in its order, so that they fit the structure alone of which they were taken
+bool History::fits(const Stage& stage) {
+  const std::uint64_t structure = stage.store.structure_version();
+  if (std::exchange(structure_, structure) != structure && !keys_.empty()) begin_anew("things came or went");
+  return !keys_.empty();
+}
+
 void History::drop(std::size_t number) {
   std::unique_ptr<Key> key = std::move(keys_[number]);
   keys_.erase(keys_.begin() + static_cast<std::ptrdiff_t>(number));

@@ -60,6 +60,8 @@ class History {
   void allow(std::size_t bytes) { most_ = bytes; }
 
   bool empty() const { return keys_.empty(); }
+  /// In the middle of a pass: whether there is a state to go back to. What came or went in this pass ends history.
+  bool fits(const Stage& stage);
   /// Why it goes no further back.
   const std::string& why() const { return why_; }
   double oldest_time() const { return keys_.empty() ? 0 : keys_.front()->time; }

@@ -5,6 +5,8 @@
 #include <fmt/ranges.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include "engine/behaviors.h"
 #include "engine/rewound.h"
 #include "engine/taken.h"
@@ -252,6 +254,19 @@ osc:on("/wind", function() sim:body("arm1"):add_behavior("random_force", "wind")
   wall("/wind", "things came or went");
   wall("/physics/body/stone9/remove", "things came or went");
   wall("/transport/reset", "the scene has begun there");
+  // in the tick of the rewind, before it: no state fits what there is
+  show.ticks(150);
+  show.outbox();
+  show.link.inbox.push({{message("/physics/body/stone8/remove"), message("/transport/rewind_ticks", 20)}, {Hand::osc}});
+  show.ticks(1);
+  const std::vector<std::string> said = show.outbox();
+  EXPECT_TRUE(std::ranges::any_of(said, [](const std::string& line) {
+    return line.find("time can't go back: things came or went") != line.npos;
+  })) << said.size();
+  show.ticks(30);
+  show.send("/transport/rewind_ticks", 20);
+  show.engine.idle();
+  EXPECT_EQ(show.outbox().back().find("/error"), std::string::npos);
 }
 
 TEST(History, AReloadIsAWall) {
