@@ -14,8 +14,8 @@ namespace limber {
 namespace {
 
 void pass_context(KeyBytes& key, ScriptContext& context) {
-  key.pass_all(context.random, context.seeded_with, context.timers_at, context.handlers,
-               context.disabled_handlers, context.cancels);
+  key.pass_all(context.random, context.seeded_with, context.timers_at, context.handlers, context.disabled_handlers,
+               context.cancels);
   context.behaviors->pass_memory(key);
 }
 

@@ -80,8 +80,7 @@ TEST(LuaBehaviors, ErrorsNameWhatExists) {
             "scripts/scene.lua:7: 'cohesion' acts on several bodies: attach it with sim:add_group_behavior");
   EXPECT_EQ(error("sim:add_group_behavior('force', 'f')"),
             "scripts/scene.lua:7: 'force' acts on one body: attach it with body:add_behavior");
-  EXPECT_EQ(error("sim:group_behavior('flock')"),
-            "scripts/scene.lua:7: sim has no group behavior 'flock'; none exist");
+  EXPECT_EQ(error("sim:group_behavior('flock')"), "scripts/scene.lua:7: sim has no group behavior 'flock'; none exist");
   EXPECT_EQ(error("local twin = arm:copy('twin') arm:add_behavior('force', 'f', { parts = twin:part(1) })"),
             "scripts/scene.lua:7: add_behavior: parts: part 'twin/base' does not belong to body 'arm'");
   EXPECT_EQ(error("arm.add_behavior('force', 'f')"),
