@@ -25,8 +25,10 @@ constexpr RepeatedFault kRepeatedFaults[] = {
     {"after", "local function again() sim:after(0, again) error('fails at ' .. sim.tick) end sim:after(0, again)",
      "fails at"},
     {"osc:on", "osc:on('/go', function() error('fails at ' .. sim.tick) end)", "fails at", "/go"},
-    {"osc:on, a new text each time", "osc:on('/go', function() error(rng:uniform() .. ('q'):rep(sim.tick)) end)", "qq",
-     "/go"},
+    {"after, a new text each time",
+     "local function fails() error(rng:uniform() .. ('q'):rep(sim.tick)) end "
+     "sim:on_step(function() sim:after(0, fails) end)",
+     "qq"},
     {"on_contact",
      R"(sim:add_body("floor"):add_part("floor", sim:add_plane_shape("floor"))
         local ball = sim:add_body("ball"):add_part("p", sim:add_sphere_shape("ball", 0.1))

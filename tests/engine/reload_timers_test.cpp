@@ -154,9 +154,10 @@ osc:on("/go", function(n)
   state.timers = state.timers or {}
   state.timers[n] = sim:after(1, function() osc:send("/go", n, sim.tick) end)
 end)
-osc:on("/cancel", function(n, fails)
+osc:on("/cancel", function(n) state.timers[n]:cancel() end)
+osc:on("/cancel_and_fail", function(n)
   state.timers[n]:cancel()
-  if fails then error("no") end
+  error("no")
 end)
 )";
   Edited edited(scene);
@@ -167,7 +168,7 @@ end)
     if (n < 3) edited.save(fmt::format("{} -- {}", scene, n));
   }
   edited.show().send("/cancel", 1);
-  edited.show().send("/cancel", 2, true);
+  edited.show().send("/cancel_and_fail", 2);
   edited.show().send("/cancel", 4);
   edited.show().ticks(1);
   EXPECT_EQ(heard(edited.show(), 20), (Texts{"/go 2 11", "/go 3 12"}));
