@@ -108,6 +108,17 @@ struct Recording {
   double tick = 0, recorder = 0, bytes = 0;
 };
 
+// of a take that may not have its name yet
+double size_of(const std::string& file) {
+  const std::filesystem::path path(file);
+  double bytes = 0;
+  for (const auto& entry : std::filesystem::directory_iterator(path.parent_path())) {
+    if (entry.path().filename().string().starts_with(path.filename().string()))
+      bytes += static_cast<double>(entry.file_size());
+  }
+  return bytes;
+}
+
 Recording record_beside(const BenchFolder& folder, int ticks) {
   EngineLink link;
   Engine engine(link, taken_show(folder));
@@ -115,7 +126,7 @@ Recording record_beside(const BenchFolder& folder, int ticks) {
   const std::string file = folder.file("beside.take");
   TakeRecorder recorder({file, false}, {}, [](const std::string&) {});
   LIMBER_CHECK(recorder.opened().ok());
-  const auto head = static_cast<double>(std::filesystem::file_size(file));
+  const double head = size_of(file);
   Random random(1, "sliders");
   std::vector<Command> commands;
   Recording sum;
@@ -135,7 +146,7 @@ Recording record_beside(const BenchFolder& folder, int ticks) {
     sum.tick += ticked - taken - look;
   }
   recorder.finish({}).reset();
-  sum.bytes = static_cast<double>(std::filesystem::file_size(file)) - head;
+  sum.bytes = size_of(file) - head;
   return sum;
 }
 

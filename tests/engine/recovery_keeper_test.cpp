@@ -141,9 +141,9 @@ TEST(Recovery, TheSecondProgramTakesOverWhenTheFirstHasEnded) {
   second.send("/physics/sim/gravity", 0, 0, -7.5);
   second.ticks(100);
   EXPECT_EQ(rig.saved().find("-7.5"), std::string::npos);
+  before = log_newest();
   first->engine.end_recovery();
   first.reset();
-  before = log_newest();
   rig.play_until_saved(second, "-7.5");
   EXPECT_TRUE(RecoveryShow::said(before, "the other program that played this scene has ended"));
 }

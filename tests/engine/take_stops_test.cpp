@@ -4,17 +4,17 @@
 namespace limber::engine_test {
 namespace {
 
-// "/trap" computes without an end when it is called for the first time: a stopped call leaves `hits` at 1
+// trap() computes without an end when it is called for the first time: a stopped call leaves `hits` at 1
 constexpr const char* kTrap = R"(
 sim.timestep = 0.02
 local ball = sim:add_body("ball"):add_part("p", sim:add_sphere_shape("s", 0.1), { position = vec3(0, 0, 9) })
 local hits = 0
 osc:on("/push", function(x) ball:apply_impulse(vec3(x, rng:uniform(0, 0.1), 0)) end)
-osc:on("/trap", function()
+function trap()
   hits = hits + 1
   ball:apply_impulse(vec3(0, hits, 0))
   while hits == 1 do end
-end)
+end
 )";
 
 struct Trapped {
@@ -67,9 +67,9 @@ TEST(TakeStops, ARewindEndsThoughACallThatItRepeatsDoesNot) {
   Trapped trapped;
   Show show(trapped.options);
   show.ticks(60);
-  show.send("/trap");
+  evaluate(show, "trap()");
   show.ticks(3);
-  show.send("/trap");
+  evaluate(show, "trap()");
   show.ticks(3);
   const std::uint64_t seen = log_newest();
   show.send("/transport/rewind_ticks", 1);
@@ -82,15 +82,15 @@ TEST(TakeStops, ARewindEndsThoughACallThatItRepeatsDoesNot) {
   EXPECT_EQ(show.engine.world().tick(), 69u);
 }
 
-// what a stopped call had set in Lua's variables is not in the take: the second call of "/trap" is the first there
+// what a stopped call had set in Lua's variables is not in the take: the second call of trap() is the first there
 TEST(TakeStops, AShowThatPlaysATakeWhoseCallsDifferGoesOn) {
   Trapped trapped;
   {
     Show show(trapped.options);
     show.ticks(10);
-    show.send("/trap");
+    evaluate(show, "trap()");
     show.ticks(3);
-    show.send("/trap");
+    evaluate(show, "trap()");
     show.ticks(200);
     (void)trapped.end(show);
   }

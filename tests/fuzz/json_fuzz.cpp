@@ -7,7 +7,7 @@
 
 namespace {
 
-struct Desk : limber::QueryDesk {
+struct Desk : limber::FuzzedQueryDesk {
   void input(std::string_view bytes) {
     // it waits for an image just when it begins to listen to something
     const bool waits = client().text(bytes);

@@ -33,20 +33,20 @@ struct QueryLine : ClientLine {
 };
 
 /// A world and two clients of it: one sends what the target gives it, the other listens to one value.
-class QueryDesk {
+class FuzzedQueryDesk {
  public:
-  QueryDesk() {
+  FuzzedQueryDesk() {
     hall_.enter(client_);
     hall_.enter(other_);
     (void)other_.text(R"({"COMMAND":"LISTEN","DATA":"/physics/sim/seed"})");
   }
-  ~QueryDesk() {
+  ~FuzzedQueryDesk() {
     hall_.leave(client_);
     hall_.leave(other_);
   }
 
-  QueryDesk(const QueryDesk&) = delete;
-  QueryDesk& operator=(const QueryDesk&) = delete;
+  FuzzedQueryDesk(const FuzzedQueryDesk&) = delete;
+  FuzzedQueryDesk& operator=(const FuzzedQueryDesk&) = delete;
 
   Client& client() { return client_; }
   /// What has come takes effect; the other client is told of a value that is set now.

@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <cstdio>
 #include <cstdlib>
 #include <memory>
 #include <string_view>
@@ -12,8 +13,10 @@
 namespace limber {
 
 /// A fault that no sanitizer sees.
-inline void must(bool condition) {
-  if (!condition) std::abort();
+inline void must(bool condition, int line = __builtin_LINE()) {
+  if (condition) return;
+  std::fprintf(stderr, "line %d of the target does not hold\n", line);
+  std::abort();
 }
 
 /// Gives the bytes to a Desk that is made for the first input, and anew when it is worn().

@@ -9,7 +9,7 @@
 
 namespace {
 
-struct Desk : limber::QueryDesk {
+struct Desk : limber::FuzzedQueryDesk {
   void input(std::string_view bytes) {
     while (bytes.size() >= 3) {
       const int kind = bytes[0] % 3;
