@@ -656,13 +656,13 @@ function sim:on_step(f) end
 ---@param f fun(part: part, other: part, impulse: number, position: vec3)
 function sim:on_contact(f) end
 
----Whenever the time passes a multiple of so many seconds. Set by a callback, it goes on after a save as it is.
+---Calls f each time the simulated time passes a multiple of `seconds`. A timer set in a callback continues unchanged after a save.
 ---@param seconds number
 ---@param f fun()
 ---@return timer
 function sim:every(seconds, f) end
 
----Once, so many seconds from now. Set by a callback, it goes on after a save; at the top level, it keeps its time.
+---Calls f once, `seconds` from now. A timer set in a callback continues after a save; one at the top level keeps its time.
 ---@param seconds number
 ---@param f fun()
 ---@return timer

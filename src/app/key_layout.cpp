@@ -1,4 +1,4 @@
-// First what is printed, then places that are left.
+// Keys are assigned by what is printed on them, and those that remain by their place.
 #include "app/key_layout.h"
 
 #include <GLFW/glfw3.h>

@@ -19,7 +19,7 @@ bool is_hexadecimal(std::string_view text) {
   return text.find_first_not_of("0123456789abcdefABCDEF") == std::string_view::npos;
 }
 
-// what the word must be for this tag; null: it is valid
+// a description of what the tag takes, for the error; null: the word is valid
 const char* needed(char tag, const std::string& word) {
   switch (tag) {
     case 'i':

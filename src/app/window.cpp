@@ -61,13 +61,6 @@ KeyMods key_mods(int mods) {
   return {(mods & GLFW_MOD_CONTROL) != 0, (mods & GLFW_MOD_SHIFT) != 0, (mods & GLFW_MOD_ALT) != 0};
 }
 
-// in any case
-bool contains_letters(std::string_view text, std::string_view part) {
-  const auto small = [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; };
-  const auto same = [&](char a, char b) { return small(a) == small(b); };
-  return !part.empty() && std::search(text.begin(), text.end(), part.begin(), part.end(), same) != text.end();
-}
-
 constexpr int kFromCorner = 64;  // of another screen, in its units
 
 Window& of(GLFWwindow* window) { return *static_cast<Window*>(glfwGetWindowUserPointer(window)); }
@@ -346,7 +339,7 @@ Result<void> Window::move_to_monitor(const std::string& which) {
   for (int i = count - 1; i >= 0; i--) {
     const char* const name = glfwGetMonitorName(screens[i]);
     names.insert(names.begin(), fmt::format("{} ({})", i + 1, name == nullptr ? "" : printable(name)));
-    const bool named = name != nullptr && contains_letters(name, which);
+    const bool named = name != nullptr && plain_name(name).find(plain_name(which)) != std::string::npos;
     if (number ? *number == i + 1 : named) found = screens[i];
   }
   const GLFWvidmode* const mode = found == nullptr ? nullptr : glfwGetVideoMode(found);
@@ -359,7 +352,7 @@ Result<void> Window::move_to_monitor(const std::string& which) {
   glfwGetMonitorPos(found, &x, &y);
   glfwGetWindowSize(window_, &width, &height);
   glfwSetWindowPos(window_, x + std::max(0, mode->width - width) / 2, y + std::max(0, mode->height - height) / 2);
-  glfwPollEvents();  // its place counts from here
+  glfwPollEvents();  // toggle_full_screen() asks where the window is
   return {};
 }
 

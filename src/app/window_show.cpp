@@ -68,21 +68,21 @@ WindowShow::WindowShow(std::unique_ptr<Window> window, std::unique_ptr<Renderer>
       renderer_(std::move(renderer)),
       settings_file_(settings_file()),
       kept_(settings),
-      placed_(settings),
       panel_scale_(options.panel_scale.value_or(1)),
       own_size_(!options.size.empty()),
       scene_(std::move(scene)),
       link_(link) {
   GuiOptions panel = panel_options(window_.get(), window_->api());
   panel.settings = settings;
+  if (!options.monitor.empty()) panel.settings.monitor = options.monitor;
+  if (options.hide_pointer) panel.settings.hide_pointer = *options.hide_pointer;
+  const bool fullscreen = options.fullscreen.value_or(settings.fullscreen);
   gui_ = std::make_unique<Gui>(link_, std::move(panel));
-  if (!options.monitor.empty()) placed_.monitor = options.monitor;
-  placed_.hide_pointer = options.hide_pointer.value_or(placed_.hide_pointer);
-  if (!placed_.monitor.empty()) {
-    if (const Result<void> moved = window_->move_to_monitor(placed_.monitor); !moved) log_warning("{}", moved.error());
+  if (const std::string& monitor = gui_->settings().monitor; !monitor.empty()) {
+    if (const Result<void> moved = window_->move_to_monitor(monitor); !moved) log_warning("{}", moved.error());
   }
-  if (placed_.hide_pointer) window_->hide_pointer();
-  if (options.fullscreen.value_or(placed_.fullscreen)) window_->toggle_full_screen();
+  if (gui_->settings().hide_pointer) window_->hide_pointer();
+  if (fullscreen) window_->toggle_full_screen();
 }
 
 WindowShow::~WindowShow() {
@@ -92,8 +92,6 @@ WindowShow::~WindowShow() {
     now.window_height = window_->height();
   }
   now.fullscreen = window_->is_full_screen();
-  now.hide_pointer = placed_.hide_pointer;
-  now.monitor = placed_.monitor;
   if (now != kept_) save_settings(settings_file_, now);
 }
 

@@ -56,7 +56,6 @@ class WindowShow {
   Vec3 follows_from_{0};                  // the eye, as seen from what is followed
   std::string settings_file_;
   PanelSettings kept_;        // as they are in the file
-  PanelSettings placed_;      // monitor and pointer, as they are in force
   double panel_scale_ = 1;    // of the panel, beside the screen's own
   bool own_size_ = false;     // the command line says how large the window is
   std::unique_ptr<Gui> gui_;  // before its context goes, too

@@ -32,7 +32,7 @@ struct LogLine {
 /// ("scene.lua:12"); empty: log_source() of the text. [any]
 void log_line(LogLevel level, std::string_view text, std::string_view source = {});
 
-/// Writes what a script printed to `to`, as it is, and to the ring. In a show (OutputMode::live) `to` gets at
+/// Writes a line that a script printed: unchanged to `to`, and to the ring. In a show (OutputMode::live), `to` gets at
 /// most 2000 lines at once and 200 a second. [any]
 void log_print(std::string_view text, OutputTo to);
 inline constexpr int kMostPrintedAtOnce = 2000;

@@ -33,7 +33,7 @@ enum class OutputMode : std::uint8_t {
 /// thread left, text is written as before. [main, once]
 void start_output(OutputMode mode);
 bool output_is_live();
-/// The program is about to end because somebody asked for it: no device is waited for longer than half a second. [any]
+/// Somebody has asked the program to end: from here on, no device is waited for longer than half a second. [any]
 void hurry_output();
 /// Waits for the text that is queued, as long as the devices take it. [main, at the end]
 void finish_output();

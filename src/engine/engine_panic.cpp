@@ -17,9 +17,8 @@ void Engine::begin_panic() {
   ignored_said_ = false;
   history_.hold();
   log_warning(
-      "panic: behaviours, forces and the scene's callbacks stop, motors are {}; /transport/panic again, after a "
-      "second, "
-      "or /transport/panic_end ends it, /transport/reset begins anew",
+      "panic: behaviours, forces and the scene's callbacks stop, motors are {}; /transport/panic_end ends it, and so "
+      "does /transport/panic after its first second; /transport/reset begins anew",
       world.panic().holds_motors() ? "held" : "limp");
 }
 

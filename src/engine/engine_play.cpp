@@ -9,9 +9,8 @@ namespace limber {
 
 namespace {
 
-// of a replay: what was stopped then is stopped again, and nothing else is, unless the runs have parted
-// A take has the calls that are stopped. Others end, too, when the runs differ: in a show that plays the take, soon
-// enough for the performer.
+// Limits of a replay. The take lists the calls that were stopped; another call exceeds these limits only when the
+// replay differs from the recording. In a show that plays the take, it must end soon enough for the performer.
 ScriptLimits wide_limits(bool in_show) {
   ScriptLimits limits;
   limits.call_ms *= in_show ? 10 : 100;

@@ -36,7 +36,7 @@ void History::begin_anew(std::string_view why) {
   too_large_ = false;
 }
 
-// key states list what there is in its order, so that they fit the structure alone of which they were taken
+// a key state lists things in their order, so it fits only the structure from which it was taken
 bool History::fits(const Stage& stage) {
   const std::uint64_t structure = stage.store.structure_version();
   if (std::exchange(structure_, structure) != structure && !keys_.empty()) begin_anew("things came or went");
@@ -101,10 +101,7 @@ void History::end_pass(Stage& stage, const CallLedger& calls, bool running, doub
     release_runs(stage);
     return;
   }
-  const std::uint64_t structure = stage.store.structure_version();
-  const bool other = std::exchange(structure_, structure) != structure;
-  if (other && !keys_.empty()) begin_anew("things came or went");
-  if (!keys_.empty()) {
+  if (fits(stage)) {
     KeyBytes& inputs = keys_.back()->inputs;
     for (const StoppedCall& stop : calls.stopped_since_rewind()) {
       auto record = Record::stop;

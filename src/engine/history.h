@@ -60,7 +60,7 @@ class History {
   void allow(std::size_t bytes) { most_ = bytes; }
 
   bool empty() const { return keys_.empty(); }
-  /// In the middle of a pass: whether there is a state to go back to. What came or went in this pass ends history.
+  /// Whether there is a state to go back to. Things that came or went since the last call end history. [sim]
   bool fits(const Stage& stage);
   /// Why it goes no further back.
   const std::string& why() const { return why_; }

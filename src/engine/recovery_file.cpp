@@ -100,17 +100,12 @@ std::shared_ptr<const Preset> changed_values(const Preset& now, const Preset& sc
 }
 
 Result<std::unique_ptr<RecoveryFile>> RecoveryFile::open(const std::string& folder, const std::string& scene) {
-  std::error_code fault;
-  const fs::path whole = fs::weakly_canonical(fs::absolute(scene, fault), fault);
-  const std::string path = fault ? scene : whole.string();
-  fault.clear();
-  if (!fs::is_directory(folder, fault)) {
-    fs::create_directories(folder, fault);
-    if (fault) return Error{fmt::format("{}: {}", printable(folder), fault.message())};
-    fs::permissions(folder, fs::perms::owner_all, fault);
-  }
-  std::unique_ptr<RecoveryFile> file(new RecoveryFile(path, fmt::format("{}/{}", folder, SceneLock::name_of(scene))));
+  std::unique_ptr<RecoveryFile> file(
+      new RecoveryFile(SceneLock::path_of(scene), fmt::format("{}/{}", folder, SceneLock::name_of(scene))));
   if (!file->lock_.take()) return std::unique_ptr<RecoveryFile>();
+  std::error_code fault;
+  fs::create_directories(folder, fault);  // the lock has made it, where that is possible
+  if (fault) return Error{fmt::format("{}: {}", printable(folder), fault.message())};
   // the newest that was lost is the one that counts
   if (fs::exists(file->saved_file(), fault)) (void)std::rename(file->saved_file().c_str(), file->lost_file().c_str());
   return file;

@@ -30,8 +30,8 @@ class RecoveryKeeper {
   /// Takes the scene's file: what a run of it has left that did not end well. An error: what is damaged, or why
   /// nothing can be kept. Before begin().
   Result<std::optional<LostValues>> open(const std::string& scene);
-  /// False: another program plays the scene. What it keeps is not to be written; it is taken over once that has ended.
-  /// Before begin().
+  /// False: another program plays the scene and owns the file; this one takes it over when that has ended. Before
+  /// begin().
   bool owned() const { return !elsewhere_; }
   /// What was lost is in the show's values from here on. Before begin().
   void brought_back() { brought_back_ = true; }

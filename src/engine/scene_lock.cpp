@@ -14,10 +14,14 @@ namespace limber {
 
 namespace fs = std::filesystem;
 
-std::string SceneLock::name_of(const std::string& scene) {
+std::string SceneLock::path_of(const std::string& scene) {
   std::error_code fault;
   const fs::path whole = fs::weakly_canonical(fs::absolute(scene, fault), fault);
-  const std::string path = fault ? scene : whole.string();
+  return fault ? scene : whole.string();
+}
+
+std::string SceneLock::name_of(const std::string& scene) {
+  const std::string path = path_of(scene);
   return fmt::format("{}-{:016x}", fs::path(path).stem().string(), hash_bytes(path));
 }
 

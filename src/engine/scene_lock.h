@@ -11,8 +11,9 @@ namespace limber {
 
 class SceneLock {
  public:
-  /// What is locked of a scene: a name in the folder for it, such as "arms-0123456789abcdef", the same for every path
-  /// of the scene's file.
+  /// The scene's file with its full path, links resolved.
+  static std::string path_of(const std::string& scene);
+  /// A file name for what is kept of a scene, such as "arms-0123456789abcdef": the same for every path of its file.
   static std::string name_of(const std::string& scene);
 
   /// Without a file nothing is locked, and everybody owns it.

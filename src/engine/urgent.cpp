@@ -47,13 +47,7 @@ unsigned discarded_by(const Message& message) {
 
 bool same_address(std::string_view address, std::string_view plain) {
   if (address.size() > 1 && address.back() == '/') address.remove_suffix(1);
-  std::size_t n = 0;
-  for (const char c : address) {
-    if (c == '_') continue;
-    const char lower = c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
-    if (n == plain.size() || plain[n++] != lower) return false;
-  }
-  return n == plain.size();
+  return same_name(address, plain);
 }
 
 std::optional<UrgentKind> urgent_address(std::string_view address) {
@@ -73,6 +67,7 @@ std::optional<UrgentKind> urgent_kind(const Message& message) {
 }
 
 bool Overtaken::discards(const Message& message, std::uint64_t arrival) const {
+  if (arrival >= std::ranges::max(newest_)) return false;  // nearly always
   const unsigned by = discarded_by(message);
   for (std::size_t kind = 0; by >> kind != 0; kind++) {
     if ((by >> kind & 1u) != 0 && arrival < newest_[kind]) return true;

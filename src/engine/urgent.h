@@ -17,7 +17,7 @@ enum class UrgentKind : std::uint8_t { panic, panic_end, pause, take_stop };
 std::optional<UrgentKind> urgent_kind(const Message& message);
 /// The same by an address alone. [any]
 std::optional<UrgentKind> urgent_address(std::string_view address);
-/// Whether an address as it came is `plain`: case, underscores and a final slash don't count. Allocates nothing. [any]
+/// Whether a received address is `plain`, ignoring case, underscores and a final slash. Allocates nothing. [any]
 bool same_address(std::string_view address, std::string_view plain);
 
 struct UrgentRequest {

@@ -69,12 +69,7 @@ std::string mods_text(const KeyMods& mods) {
   return fmt::format("{}{}{}", mods.ctrl ? "Ctrl+" : "", mods.alt ? "Alt+" : "", mods.shift ? "Shift+" : "");
 }
 
-bool same_letters(std::string_view a, std::string_view b) {
-  const auto small = [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; };
-  return std::ranges::equal(a, b, {}, small, small);
-}
-
-// by itself it types a letter or does something to a text
+// whether it types a letter or edits a text
 bool types(const KeyPress& press) {
   const bool function = press.key >= GuiKey::f1 && press.key <= GuiKey::f12;
   return !press.mods.ctrl && !press.mods.alt && !function;
@@ -101,14 +96,14 @@ std::optional<KeyPress> parse_key(std::string_view text) {
     for (const auto& [word, mod] :
          {std::pair("ctrl+", &KeyMods::ctrl), {"alt+", &KeyMods::alt}, {"shift+", &KeyMods::shift}}) {
       const std::size_t size = std::string_view(word).size();
-      if (!same_letters(text.substr(0, size), word)) continue;
+      if (!same_name(text.substr(0, size), word)) continue;
       press.mods.*mod = more = true;
       text.remove_prefix(size);
     }
   }
   for (int key = 1; key < static_cast<int>(GuiKey::count); key++) {
     press.key = static_cast<GuiKey>(key);
-    if (same_letters(text, key_name(press.key))) return press;
+    if (same_name(text, key_name(press.key))) return press;
   }
   return std::nullopt;
 }

@@ -361,10 +361,7 @@ TEST(History, ATakeWithRewindsReplays) {
     show.engine.end_take();
     show.engine.finish_saving();
   }
-  const Replayed again = replay_take(take);
-  ASSERT_EQ(again.error, "");
-  EXPECT_FALSE(again.verdict.parted.has_value()) << text_of(again.verdict);
-  EXPECT_EQ(again.hash, hash);
+  expect_replay(take, hash);
 }
 
 TEST(History, ReturnsToTheKeyStateBeforeATick) {

@@ -249,10 +249,7 @@ TEST(PanicButton, ATakeWithPanicsIsReplayedToItsHash) {
     show.engine.end_take();
     show.engine.finish_saving();
   }
-  const Replayed again = replay_take(take);
-  EXPECT_EQ(again.error, "");
-  EXPECT_FALSE(again.verdict.parted.has_value());
-  EXPECT_EQ(again.hash, hash);
+  expect_replay(take, hash);
 }
 
 }  // namespace

@@ -190,10 +190,7 @@ TEST(Recovery, ATakeThatBeginsWithRecoveredValuesIsReplayed) {
     show.engine.finish_saving();
     show.engine.end_recovery();
   }
-  const Replayed again = replay_take(rig.options.record);
-  EXPECT_EQ(again.error, "");
-  EXPECT_FALSE(again.verdict.parted.has_value());
-  EXPECT_EQ(again.hash, hash);
+  expect_replay(rig.options.record, hash);
 }
 
 TEST(Recovery, ThatValuesAreKeptChangesNothing) {

@@ -57,10 +57,7 @@ TEST(TakeStops, AStoppedCallStaysStoppedWhenAReplayRewinds) {
     show.ticks(10);
     hash = trapped.end(show);
   }
-  const Replayed again = replay_take(trapped.options.record);
-  EXPECT_EQ(again.error, "");
-  EXPECT_FALSE(again.verdict.parted.has_value()) << text_of(again.verdict);
-  EXPECT_EQ(again.hash, hash);
+  expect_replay(trapped.options.record, hash);
 }
 
 TEST(TakeStops, ARewindEndsThoughACallThatItRepeatsDoesNot) {

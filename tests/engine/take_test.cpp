@@ -58,10 +58,7 @@ TEST(Take, TheFilesOnTheDiskDoNotMatter) {
   const std::string take = folder.path("kept.take");
   const std::uint64_t hash = record_take(folder, take, 80, 2);
   for (const char* gone : {"scripts", "behaviors_lua", "urdf"}) std::filesystem::remove_all(folder.path(gone));
-  const Replayed again = replay_take(take);
-  ASSERT_EQ(again.error, "");
-  EXPECT_FALSE(again.verdict.parted.has_value()) << text_of(again.verdict);
-  EXPECT_EQ(again.hash, hash);
+  expect_replay(take, hash);
 }
 
 TEST(Take, CurrentScriptsPartWhereTheyDiffer) {
@@ -108,10 +105,7 @@ TEST(Take, BeginsInTheMiddleOfAShowWithAReset) {
     hash = show.engine.state_hash();
     show.engine.finish_saving();
   }
-  const Replayed again = replay_take(folder.path("takes/middle.take"));
-  ASSERT_EQ(again.error, "");
-  EXPECT_FALSE(again.verdict.parted.has_value()) << text_of(again.verdict);
-  EXPECT_EQ(again.hash, hash);
+  expect_replay(folder.path("takes/middle.take"), hash);
 }
 
 // a hand's step must not hold what a stopped call had set: a replay does not make that call
@@ -140,10 +134,7 @@ sim:on_step(function() if sim.tick == 20 then sim.gravity = vec3(0, 0, -8) end e
     hash = show.engine.state_hash();
     show.engine.finish_saving();
   }
-  const Replayed again = replay_take(options.record);
-  ASSERT_EQ(again.error, "");
-  EXPECT_FALSE(again.verdict.parted.has_value()) << text_of(again.verdict);
-  EXPECT_EQ(again.hash, hash);
+  expect_replay(options.record, hash);
 }
 
 TEST(Take, CutAtAnyByteItPlaysToItsLastWholeTick) {

@@ -171,6 +171,14 @@ inline Replayed replay_take(const std::string& take, bool current_scripts = fals
   return {engine.verdict(), engine.state_hash(), ""};
 }
 
+/// The take replays to its end, with this hash.
+inline void expect_replay(const std::string& take, std::uint64_t hash) {
+  const Replayed again = replay_take(take);
+  EXPECT_EQ(again.error, "");
+  EXPECT_FALSE(again.verdict.parted.has_value()) << text_of(again.verdict);
+  EXPECT_EQ(again.hash, hash);
+}
+
 inline std::string take_bytes(const std::string& file) {
   std::ifstream in(file, std::ios::binary);
   return {std::istreambuf_iterator<char>(in), {}};

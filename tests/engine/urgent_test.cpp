@@ -219,10 +219,7 @@ TEST(PanicFirstSecond, ATakeHasItsEnd) {
     hash = show.engine.state_hash();
     show.engine.finish_saving();
   }
-  const Replayed again = replay_take(options.record);
-  EXPECT_EQ(again.error, "");
-  EXPECT_FALSE(again.verdict.parted.has_value()) << text_of(again.verdict);
-  EXPECT_EQ(again.hash, hash);
+  expect_replay(options.record, hash);
 }
 
 // each look at the clock takes 1 ms, so a handler takes 1 ms, and a tick has time for some
@@ -277,10 +274,7 @@ TEST(HandlerBudget, AReplayAndARewindHearTheSameInTheSameTick) {
     hash = show.engine.state_hash();
     show.engine.finish_saving();
   }
-  const Replayed again = replay_take(options.record);
-  EXPECT_EQ(again.error, "");
-  EXPECT_FALSE(again.verdict.parted.has_value()) << text_of(again.verdict);
-  EXPECT_EQ(again.hash, hash);
+  expect_replay(options.record, hash);
 }
 
 TEST(HandlerBudget, MoreThanWaitAreCountedAndMissed) {

@@ -215,7 +215,7 @@ class Desk {
                       },
                       [this](const Origin&) { pongs_++; },
                       [this](const Message& message, const Origin& origin) {
-                        const Result<void> done = subscribers_.take(message, origin);
+                        Result<void> done = subscribers_.take(message, origin);
                         subscribed_ += done ? 1 : 0;
                         return done;
                       },

@@ -1,4 +1,4 @@
-// It is tried, since limits count what other programs of the user have, too.
+// By trying, since the limits also count what other programs of the user hold.
 #include "base/system/resources.h"
 
 #include <sys/resource.h>
@@ -35,7 +35,7 @@ int count_threads(int most) {
   try {
     while (static_cast<int>(started.size()) < most) started.emplace_back([ended] { ended.wait(); });
   } catch (const std::system_error&) {
-    // as many as there can be
+    // the limit is reached
   }
   end.set_value();
   for (std::thread& thread : started) thread.join();

@@ -1,4 +1,4 @@
-// What the system gives a program at most: descriptors, threads, stack.
+// Limits of the system on a program: descriptors, threads, stack.
 #pragma once
 
 #include <cstddef>
@@ -13,8 +13,8 @@ struct Resources {
   std::size_t stack = 0;  ///< Of the first thread, bytes.
 };
 
-/// Tries whether a program that needs so much can run: opens so many descriptors and starts so many threads, for a
-/// moment. The error names what is missing and the command that raises it. [main, before other threads are started]
+/// Checks that the system's limits leave room for these resources: opens the descriptors and starts the threads for a
+/// moment. The error names what is missing and the command that raises the limit. [main, before other threads start]
 Result<void> check_resources(const Resources& needed);
 
 }  // namespace limber::system
