@@ -22,7 +22,10 @@ void Clock::restart(Time now) {
 
 void Clock::tick(Time now, double tick_seconds, double speed) {
   if (!started_) restart(now);
-  if (Seconds(now - due_).count() > 0.25) due_ = now;
+  if (Seconds(now - due_).count() > 0.25) {
+    due_ = now;
+    let_go_++;
+  }
   due_ = after(due_, tick_seconds / speed);
 
   const double real = close_window(now, tick_seconds);

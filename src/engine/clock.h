@@ -2,6 +2,7 @@
 #pragma once
 
 #include <chrono>
+#include <cstdint>
 
 namespace limber {
 
@@ -23,6 +24,8 @@ class Clock {
   double speed_reached() const { return reached_; }
   /// True once after two seconds below 0.95 of the wanted speed; again only after it has kept up in between.
   bool take_late();
+  /// How often time was let go.
+  std::uint64_t let_go() const { return let_go_; }
 
  private:
   double close_window(Time now, double tick_seconds);
@@ -32,6 +35,7 @@ class Clock {
   double window_seconds_ = 0;  // simulated time handed out since window_start_
   double reached_ = 1;
   double late_seconds_ = 0;
+  std::uint64_t let_go_ = 0;
   bool started_ = false;
   bool late_ = false;
   bool said_ = false;

@@ -42,6 +42,9 @@ constexpr Irregular kIrregulars[] = {
     {"/list/shapes", "", "Answers with the names of the scene's shapes."},
     {"/list/scenes", "", "Answers with the names of the scenes in the folder of the one that plays."},
     {"/transport/scene", "scene", "Another scene of that folder plays from its start; the performer's values go."},
+    {"/list/health", "",
+     "Answers with what was dropped, reduced, disabled or lost: of each its name, how many, and how many seconds ago "
+     "it began."},
     {"/list/presets", "", "Answers with the names of the presets, in their order."},
     {"/preset/store", "name [pattern ...] [behaviors] [looks] [poses] [velocities] [except pattern ...]",
      "Keeps every property, or what is named, as it is now, under that name."},
@@ -114,6 +117,7 @@ Dispatch::Dispatch(World& world, Presets* presets, std::span<const Table* const>
   by_name_["/physics/behavior/parameter"].irregular = &Dispatch::behavior_parameter;
   by_name_["/visuals/camera/projection"].irregular = &Dispatch::projection;
   by_name_["/get"].irregular = &Dispatch::get;
+  by_name_["/list/health"].irregular = &Dispatch::health;
   by_name_["/list/scenes"].irregular = &Dispatch::scenes;
   by_name_["/transport/scene"].irregular = &Dispatch::scenes;
   for (const auto& [address, entry] : by_name_) addresses_.push_back(address);
@@ -404,6 +408,16 @@ Outcome Dispatch::scenes(const Message& message) {
   Outcome outcome;
   outcome.kind = Outcome::Kind::scenes;
   outcome.error = "scenes are changed while a show plays (limber play, without --fast)";  // for who can't
+  return outcome;
+}
+
+Outcome Dispatch::health(const Message& message) {
+  if (!message.args.empty()) return Outcome::refused("takes no arguments");
+  Outcome outcome;
+  outcome.kind = Outcome::Kind::answered;
+  Message& answer = outcome.answers.emplace_back(Message{"/list/health", {}});
+  if (health_ != nullptr) answer = health_->answer("/list/health");
+  if (answer.args.empty()) answer.args.push_back(Arg::of(""));  // no answer looks like a question
   return outcome;
 }
 

@@ -12,6 +12,7 @@
 #include "engine/answers.h"
 #include "engine/coerce.h"
 #include "engine/grips.h"
+#include "engine/health.h"
 #include "engine/outcome.h"
 #include "engine/presets.h"
 #include "engine/select.h"
@@ -35,6 +36,9 @@ class Dispatch {
   /// Without presets their messages are refused. `more`: classes beside the world's own, whose things stand in a group
   /// of their name in each body; one with a class's own addresses goes before it.
   explicit Dispatch(World& world, Presets* presets = nullptr, std::span<const Table* const> more = {});
+
+  /// Without it there is no answer to /list/health.
+  void use(const Health& health) { health_ = &health; }
 
   Outcome execute(const Message& message);
   /// Near names are looked for in so many messages between two calls; others are refused with a shorter text.
@@ -95,6 +99,7 @@ class Dispatch {
   Outcome behavior_parameter(const Message& message);
   Outcome list(const Message& message);
   Outcome scenes(const Message& message);
+  Outcome health(const Message& message);
   Outcome get(const Message& message);
   Outcome gone(const Message& message);
   Outcome preset(const Message& message);
@@ -102,6 +107,7 @@ class Dispatch {
 
   World& world_;
   Presets* presets_;
+  const Health* health_ = nullptr;
   Store& store_;
   HintBudget hints_;
   PatternBudget work_{kTickWork};  // left of this tick

@@ -280,6 +280,7 @@ void Engine::pass(bool may_step) {
     end_take();
     if (plays_) end_play();
   }
+  tell_health();
   publish();
   make_image(asks_);
   if (was_paused_ != stage_->transport.paused()) send_transport();
@@ -316,8 +317,6 @@ void Engine::play(bool running) {
 }
 
 void Engine::publish() {
-  link_.counters.disabled.store(stage_->scene == nullptr ? 0 : stage_->scene->disabled_handlers(),
-                                std::memory_order_relaxed);
   stage_->counters.tell();
   stage_->preset_node.tell();
   tell_transport();

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "base/log.h"
+#include "base/output.h"
 #include "base/system/clock.h"
 #include "engine/clock.h"
 #include "engine/hand.h"
@@ -232,6 +233,7 @@ class Engine : private ScriptHost {
   void say_left_out(const std::string& text);
   void send_contacts();
   void send_transport();
+  void tell_health();
   bool wait_for_tick();
   void pace();
   bool finished() const;
@@ -297,6 +299,12 @@ class Engine : private ScriptHost {
   std::vector<const Row*> said_clamped_;    // rows whose clamping was said
   std::vector<std::string> said_left_out_;  // lately, of presets
   std::uint64_t faults_ = 0;
+  std::uint64_t health_events_ = 0;  // of the stage, that are in link_.health
+  std::uint64_t passes_ = 0;
+  // of the whole program, before this engine was
+  const std::uint64_t lines_lost_before_ = lost_output_lines();
+  const std::uint64_t left_out_before_ = log_left_out();
+  const std::uint64_t writes_failed_before_ = failed_writes();
   bool was_paused_ = false;
 
   std::atomic<bool> stop_{false};

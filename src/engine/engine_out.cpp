@@ -61,6 +61,33 @@ void Engine::send_transport() {
               Arg::of(clock_.speed_reached())}}});
 }
 
+// what others count, read once a pass
+void Engine::tell_health() {
+  constexpr std::uint64_t kLookEvery = 16;  // passes between two looks at what takes longer
+  Health& health = link_.health;
+  Counters& counters = link_.counters;
+  const std::size_t handlers = stage_->scene == nullptr ? 0 : stage_->scene->disabled_handlers();
+  counters.disabled.store(handlers, std::memory_order_relaxed);
+  health.set(HealthItem::handlers, handlers);
+  health.set(HealthItem::dropped, counters.dropped.load(std::memory_order_relaxed));
+  health.set(HealthItem::dropped_kernel, counters.dropped_kernel.load(std::memory_order_relaxed));
+  health.set(HealthItem::discarded, counters.discarded.load(std::memory_order_relaxed));
+  health.set(HealthItem::unheard, counters.unheard.load(std::memory_order_relaxed));
+  health.set(HealthItem::unanswered, link_.outbox.dropped() + link_.query_outbox.dropped());
+  health.set(HealthItem::output, lost_output_lines() - lines_lost_before_);
+  health.set(HealthItem::files, failed_writes() - writes_failed_before_);
+  health.set(HealthItem::not_owned, recovery_ != nullptr && !recovery_->owned() ? 1 : 0);
+  health.set(HealthItem::late, clock_.let_go());
+  health.add(HealthItem::stopped, calls_.stopped().size());
+  // another stage and a rewind begin with other numbers
+  const std::uint64_t events = stage_->world.health_events();
+  if (events > health_events_) health.add(HealthItem::bodies, events - health_events_);
+  health_events_ = events;
+  if (passes_++ % kLookEvery != 0) return;
+  health.set(HealthItem::behaviors, stage_->world.behaviors().suspended());
+  health.set(HealthItem::log, log_left_out() - left_out_before_);
+}
+
 void Engine::send(Message message) { push_out({Outgoing::To::targets, {}, std::move(message)}); }
 void Engine::reply(const Origin& to, Message message) { push_out({Outgoing::To::sender, to, std::move(message)}); }
 void Engine::send_direct(const Origin& to, Message message) {

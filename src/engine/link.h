@@ -11,6 +11,7 @@
 #include "engine/change_log.h"
 #include "engine/command.h"
 #include "engine/command_inbox.h"
+#include "engine/health.h"
 #include "engine/image.h"
 #include "engine/snapshot.h"
 #include "engine/traffic.h"
@@ -37,6 +38,7 @@ struct EngineLink {
   std::atomic<std::uint64_t> image_asks{0};
   Latest<OscPlan> osc_plan;  ///< What the scene wishes; null until a scene has run, empty lists: it says nothing.
   Counters counters;
+  Health health;      ///< What was dropped, reduced, disabled or lost.
   Traffic traffic;    ///< What OSC and OSCQuery took and sent, for monitors.
   ChangeLog changes;  ///< Who set what lately, for monitors.
 

@@ -6,6 +6,7 @@
 #include "base/log.h"
 #include "base/system/thread.h"
 #include "base/text.h"
+#include "engine/health.h"
 
 namespace limber {
 
@@ -46,6 +47,7 @@ void PresetKeeper::run() {
     const Result<void> saved = file_.save(*presets, said);
     if (!said.empty()) log_warning("{}", said);
     if (!saved) {
+      note_failed_write();
       log_error("{}: {}", printable(file_.path()), saved.error());
       failed_(saved.error());
     }

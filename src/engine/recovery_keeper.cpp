@@ -8,6 +8,7 @@
 #include "base/log.h"
 #include "base/system/thread.h"
 #include "base/text.h"
+#include "engine/health.h"
 
 namespace limber {
 
@@ -102,8 +103,10 @@ void RecoveryKeeper::write(const Given& given) {
   const Result<void> saved = file_->save(values, std::time(nullptr));
   if (saved) {
     saved_ = std::move(values);
-  } else if (!std::exchange(told_, true)) {
-    log_warning("the show's values can't be kept for a start after a crash: {}", saved.error());
+  } else {
+    note_failed_write();
+    if (!std::exchange(told_, true))
+      log_warning("the show's values can't be kept for a start after a crash: {}", saved.error());
   }
 }
 

@@ -30,8 +30,8 @@ class RecoveryKeeper {
   /// Takes the scene's file: what a run of it has left that did not end well. An error: what is damaged, or why
   /// nothing can be kept. Before begin().
   Result<std::optional<LostValues>> open(const std::string& scene);
-  /// False: another program plays the scene and owns the file; this one takes it over when that has ended. Before
-  /// begin().
+  /// False: another program plays the scene and owns the file; this one takes it over when that has ended. [any, after
+  /// open()]
   bool owned() const { return !elsewhere_; }
   /// What was lost is in the show's values from here on. Before begin().
   void brought_back() { brought_back_ = true; }
@@ -65,9 +65,9 @@ class RecoveryKeeper {
   std::string scene_;                   // as it was given
   std::shared_ptr<const Preset> saved_;
   bool brought_back_ = false;
-  bool elsewhere_ = false;        // another program has the file
-  std::optional<Given> unsaved_;  // given last, while it had
-  bool told_ = false;             // that saving fails
+  std::atomic<bool> elsewhere_{false};  // another program has the file
+  std::optional<Given> unsaved_;        // given last, while it had
+  bool told_ = false;                   // that saving fails
   std::atomic<bool> asks_{false};
   std::atomic<bool> urges_{false};
   std::mutex mutex_;

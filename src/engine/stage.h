@@ -18,13 +18,15 @@ namespace limber {
 struct Stage {
   Stage(EngineLink& link, Presets& presets, Edits& edits, const WorldSetup& setup)
       : world(store, setup),
-        transport(world),
+        transport(world, link.health),
         counters(store, link.counters),
         preset_node(world, presets),
         edit_node(world, edits),
         take_node(world),
         dispatch(world, &presets),
-        publisher(world, link.snapshots) {}
+        publisher(world, link.snapshots) {
+    dispatch.use(link.health);
+  }
 
   /// Runs the scene's file; without one the world stays empty.
   Result<void> run(const std::string& file, ScriptHost& host, const SceneOptions& options) {

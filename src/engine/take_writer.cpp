@@ -16,6 +16,7 @@
 #include "base/system/process.h"
 #include "base/system/thread.h"
 #include "base/text.h"
+#include "engine/health.h"
 #include "engine/preset_text.h"
 #include "engine/take_text.h"
 
@@ -103,6 +104,7 @@ void TakeWriter::abandon() {
 
 void TakeWriter::fail(const std::string& why) {
   if (failed_.exchange(true)) return;
+  note_failed_write();
   tell_failed_(fmt::format("{}: {}", printable(place_.path), why));
 }
 
@@ -110,7 +112,7 @@ Result<void> TakeWriter::open_file() {
   std::error_code ignored;
   if (place_.numbered) fs::create_directories(fs::path(place_.path).parent_path(), ignored);
   const std::string first = place_.path;
-  if (const Result<void> free = find_name(first); !free) return free;
+  if (Result<void> free = find_name(first); !free) return free;
   part_ = fmt::format("{}.{}.part", first, system::process_id());
   system::remove_file(part_);  // of a program of that number, which was killed
   file_ = system::open_file(part_, system::OpenMode::create_new);
@@ -217,6 +219,7 @@ void TakeWriter::run() {
   }
   changed_.notify_all();
   if (!open) {
+    note_failed_write();
     tell_failed_(open.error());
     done_.store(true);
     return;

@@ -35,12 +35,14 @@ const Table& Transport::table() {
                               "Simulated seconds per real second, over the last half second."))),
           live(readout(number("rewindable", "s", 0, 0, kUnbounded, "How far back a rewind can go."))),
           live(readout(number("history_memory", "", 0, 0, kUnbounded, "Megabytes that this takes."))),
+          say<&Transport::say_health>(
+              text("health", "What was dropped, reduced, disabled or lost, and since when; empty: all is well.")),
       });
   return table;
 }
 
-Transport::Transport(World& world)
-    : world_(world), id_(world.store().add(table(), world.store().root(), "transport", this)) {}
+Transport::Transport(World& world, const Health& health)
+    : world_(world), health_(health), id_(world.store().add(table(), world.store().root(), "transport", this)) {}
 
 bool Transport::paused() const { return world_.store().values(world_.id(), World::table().at("paused"))[0] != 0; }
 
@@ -61,6 +63,11 @@ void Transport::tell(double speed_reached, double rewindable, double history_mem
   out[0] = speed_reached;
   out[1] = rewindable;
   out[2] = history_memory;
+}
+
+std::string_view Transport::say_health() const {
+  health_text_ = health_.text();
+  return health_text_;
 }
 
 Result<void> Transport::act_play(std::span<const double>) {

@@ -4,9 +4,12 @@
 
 #include <cstdint>
 #include <optional>
+#include <string>
+#include <string_view>
 #include <utility>
 
 #include "engine/command.h"
+#include "engine/health.h"
 #include "sim/world.h"
 
 namespace limber {
@@ -15,7 +18,7 @@ class Transport {
  public:
   static const Table& table();
 
-  explicit Transport(World& world);
+  Transport(World& world, const Health& health);
 
   bool paused() const;
   /// Ticks that `step` asked for and that were not taken yet; taking one counts it.
@@ -45,11 +48,14 @@ class Transport {
   Result<void> act_rewind(std::span<const double> args);
   Result<void> act_rewind_ticks(std::span<const double> args);
   void set_paused(bool paused);
+  std::string_view say_health() const;
 
   World& world_;
+  const Health& health_;
   NodeId id_;
   int steps_ = 0;
   std::optional<Back> back_;
+  mutable std::string health_text_;
 };
 
 /// The counters as readouts.

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 #include <imgui.h>
 
+#include "gui/icons.h"
 #include "gui/panel.h"
 #include "gui/theme.h"
 
@@ -44,12 +45,19 @@ class StatusPanel : public Panel {
     const bool words = wide || compact;
     const char* const names[] = {"IN", "OUT", "LUA"};
     float width = ImGui::CalcTextSize(text.c_str()).x;
+    const std::vector<HealthEntry> losses = desk.link.health.entries();
+    const std::string lost = losses.empty() ? "" : fmt::format("{}", losses.size());
+    if (!losses.empty()) width += lamp + ImGui::CalcTextSize(lost.c_str()).x + 12 * s;
     for (const char* const name : names) width += lamp + (words ? ImGui::CalcTextSize(name).x : 0) + 6 * s;
     // in a compact window beside the transport, in the first of its two rows
     if (compact) ImGui::SetCursorPos({0, ImGui::GetStyle().WindowPadding.y});
     if (!compact) ImGui::SameLine();
     ImGui::SetCursorPosX(std::max(ImGui::GetCursorPosX(), ImGui::GetWindowWidth() - width - 14 * s));
     ImGui::AlignTextToFramePadding();
+    if (!losses.empty()) {
+      health(desk, losses, lost, lamp);
+      ImGui::SameLine(0, 12 * s);
+    }
     ImGui::TextUnformatted(text.c_str());
     desk.names.note("status.text");
     const Tone tones[] = {desk.clock < in_until_ ? Tone::blue : Tone::line,
@@ -80,6 +88,26 @@ class StatusPanel : public Panel {
   }
 
  private:
+  // a triangle and how many kinds of losses there are; a click copies all of them
+  static void health(Desk& desk, const std::vector<HealthEntry>& losses, const std::string& number, float size) {
+    const ImVec2 at = ImGui::GetCursorScreenPos();
+    const float high = ImGui::GetFrameHeight();
+    if (ImGui::InvisibleButton("##health", {size + ImGui::CalcTextSize(number.c_str()).x, high}))
+      desk.copied(desk.link.health.text());
+    desk.names.note("status.health");
+    if (ImGui::IsItemHovered()) {
+      ImGui::BeginTooltip();
+      for (const HealthEntry& entry : losses)
+        ImGui::Text("%llu  %s (since %s)", static_cast<unsigned long long>(entry.count), entry.doc,
+                    time_of_day(entry.since).c_str());
+      ImGui::TextDisabled("a click copies this list");
+      ImGui::EndTooltip();
+    }
+    draw_icon(Icon::warning, at.x + size * 0.45F, at.y + high / 2, size * 0.42F, packed(Tone::accent));
+    ImGui::GetWindowDrawList()->AddText({at.x + size, at.y + ImGui::GetStyle().FramePadding.y}, packed(Tone::accent),
+                                        number.c_str());
+  }
+
   std::uint64_t received_ = 0, sent_ = 0;
   double in_until_ = 0, out_until_ = 0;
   int pictures_ = 0;

@@ -182,6 +182,18 @@ std::vector<BehaviorGroup*> BehaviorList::groups() const {
   return list;
 }
 
+std::size_t BehaviorList::suspended() const {
+  std::size_t count = 0;
+  const auto look_at = [&](const std::unique_ptr<Behavior>& behavior) {
+    if (behavior != nullptr && !behavior->error().empty()) count++;
+  };
+  for (const Entry& entry : entries_) {
+    look_at(entry.single);
+    if (entry.group != nullptr) std::ranges::for_each(entry.group->members(), look_at);
+  }
+  return count;
+}
+
 void BehaviorList::copy_values(const Behavior& from, Behavior& to) {
   Store& store = world_.store();
   const double* values = std::as_const(store).kept_block(from.id_);

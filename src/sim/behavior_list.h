@@ -79,6 +79,8 @@ class BehaviorList {
   /// What guarded calls do to behaviours.
   BehaviorUndo& undo() { return undo_; }
 
+  /// How many have an error and are suspended, members of groups among them. Looks at each.
+  std::size_t suspended() const;
   /// Told of each error, once.
   void on_fault(std::function<void(const Behavior&)> hook) { on_fault_ = std::move(hook); }
   std::uint64_t state_hash(std::uint64_t start) const;
