@@ -14,7 +14,7 @@
 namespace limber {
 
 int fail(int code, std::string_view text) {
-  print_notice("{}", printable(text));
+  write_message(MessageLevel::error, printable(text));
   return code;
 }
 

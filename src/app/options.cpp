@@ -28,22 +28,22 @@
 #include "app/new.h"
 #include "app/paths.h"
 #include "app/picture_options.h"
-#include "app/play.h"
+#include "app/play_options.h"
 #include "app/preset.h"
 #include "app/send.h"
+#include "app/service.h"
 #include "app/take.h"
 #include "base/build_info.h"
 #include "base/output.h"
-#include "base/team.h"
 #include "base/text.h"
 
 namespace limber {
 
 namespace {
 
-constexpr std::array<std::string_view, 15> kCommands = {"play",    "console",  "monitor",  "send",       "new",
-                                                        "inspect", "describe", "annotate", "bench",      "preset",
-                                                        "take",    "export",   "doctor",   "completion", "man"};
+constexpr std::array<std::string_view, 16> kCommands = {
+    "play",  "console", "monitor", "send",   "new",    "inspect", "describe",   "annotate",
+    "bench", "preset",  "take",    "export", "doctor", "service", "completion", "man"};
 
 constexpr const char* kAbout =
     "Limber: a live simulator of actuated, articulated bodies, scripted in Lua, played over OSC.\n\n"
@@ -60,99 +60,8 @@ constexpr const char* kExitCodes =
     "Exit codes: 0 fine; 1 the input is at fault; 2 wrong usage; 3 the machine is at fault (a port taken, say).\n"
     "`limber COMMAND --help` tells more of each.";
 
-// seconds that a run may last
-CLI::Validator positive_time() {
-  return CLI::Validator(
-      [](std::string& text) {
-        const std::optional<double> seconds = parse_number(text);
-        return seconds && *seconds > 0 ? std::string() : fmt::format("'{}' is no time in seconds above 0", text);
-      },
-      "", "seconds");
-}
-
-// a count as text: 0 and up, as far as a double counts in whole steps
 CLI::Validator whole_number() {
-  return CLI::Validator(
-      [](std::string& text) {
-        const bool digits = !text.empty() && text.size() <= 16 && text.find_first_not_of("0123456789") == text.npos;
-        const std::optional<double> number = digits ? parse_number(text) : std::nullopt;
-        return number && *number <= 9007199254740992.0
-                   ? std::string()
-                   : fmt::format("'{}' is no whole number from 0 to 9007199254740992", text);
-      },
-      "", "count");
-}
-
-// who plays it and listens to it
-void add_network(CLI::App& play, PlayOptions& o) {
-  play.add_option("--osc-in", o.osc_in, "where OSC comes in; default 127.0.0.1:9003")->type_name("[ADDR:]PORT|off");
-  play.add_option("--osc-allow", o.osc_allow, "only these senders, such as 192.168.1.0/24")->type_name("CIDR,...");
-  play.add_option("--osc-out", o.osc_out,
-                  "where joint poses stream to; default 127.0.0.1:9005. Options behind it: rate=60, "
-                  "bundle=off|1472|8192|65504, "
-                  "streams=pos+rot+relrot+relpos, bodies=arm*, errors=on")
-      ->type_name("HOST:PORT[,...]|off")
-      ->allow_extra_args(false);
-  play.add_option("--query", o.query,
-                  "where OSCQuery and the remote panel (for a browser) are; default 127.0.0.1 and the number of "
-                  "--osc-in; 0.0.0.0:9003 opens it to phones and tablets")
-      ->type_name("[ADDR:]PORT|off");
-  play.add_flag("--osc-optional", o.osc_optional, "play on when a port can't be had");
-}
-
-CLI::App* add_play(CLI::App& app, PlayOptions& o) {
-  CLI::App* play = app.add_subcommand("play", "play a scene (the default command)");
-  CLI::Option* scene =
-      play->add_option("scene", o.scene, "the scene's file; left out: scripts/arms.lua")->type_name("SCENE.lua");
-  add_picture_options(*play, o.picture);
-  CLI::Option* fast = play->add_flag("--fast", o.fast,
-                                     "as fast as it can instead of in real time; no OSC, no OSCQuery unless asked for");
-  play->add_option("--duration,--seconds", o.duration, "end at that simulated time")
-      ->type_name("S")
-      ->check(positive_time());
-  play->add_option("--ticks", o.ticks, "end after so many ticks")->type_name("N")->check(whole_number());
-  CLI::Option* seed = play->add_option("--seed", o.seed, "seed of everything random; wins over sim.seed of the scene")
-                          ->type_name("N")
-                          ->check(whole_number());
-  play->add_option("--threads", o.threads,
-                   "so many threads share out each step of physics and its readouts; the result is the same")
-      ->type_name("N")
-      ->check(CLI::Range(1, Team::kMost));
-  CLI::Option* sets = play->add_option("--set", o.sets, "set a value after the scene ran; a path or the seed's address")
-                          ->type_name("PATH=VALUE")
-                          ->allow_extra_args(false);
-  CLI::Option* preset =
-      play->add_option("--preset", o.preset, "begin with this preset of the scene's, before what --set says")
-          ->type_name("NAME");
-  add_network(*play, o);
-  play->add_option("--package-path", o.package_paths, "a folder for package:// in URDF files")
-      ->type_name("DIR")
-      ->allow_extra_args(false);
-  play->add_flag("--watch", o.watch,
-                 "with --fast too, run the scene again when one of its files is saved; else it is done anyway");
-  CLI::Option* record =
-      play->add_option("--record", o.record,
-                       "record all that comes in, and the scene, so that it can be replayed to the bit")
-          ->type_name("TAKE");
-  CLI::Option* replay =
-      play->add_option("--replay", o.replay, "play that take again, with the scene and files that it holds")
-          ->type_name("TAKE")
-          ->excludes(record)
-          ->excludes(scene)
-          ->excludes(seed)
-          ->excludes(sets)
-          ->excludes(preset);
-  play->add_flag(
-          "--recover", o.recover,
-          "begin with the values that the scene had when its last run crashed; a start tells when there are some")
-      ->excludes(replay)
-      ->excludes(fast);
-  play->add_flag("--with-current-scripts", o.current_scripts,
-                 "with --replay, the scene as it is on the disk now; tells where the runs part")
-      ->needs(replay);
-  play->add_flag("--strict", o.strict, "end with 1 at any script error, refused value or health event");
-  play->add_flag("--hash", o.hash, "print the state hash at the end");
-  return play;
+  return CLI::Validator([](std::string& text) { return whole_number_fault(text); }, "", "count");
 }
 
 // argv as CLI11 is to see it: without a command in front, it is `play`
@@ -190,6 +99,7 @@ struct CommandLine {
   TakeCommand take;
   ExportCommand exported;
   DoctorCommand doctor;
+  ServiceCommand service;
   std::string shell;  // completion
   bool json = false;
   bool markdown = false;
@@ -359,6 +269,39 @@ void add_export(CLI::App& app, ExportCommand& command) {
   made->add_flag("--overwrite", command.overwrite, "write over a file that is there");
 }
 
+void add_service(CLI::App& app, ServiceCommand& command) {
+  CLI::App* service = app.add_subcommand("service", "shows that systemd starts, watches and restarts");
+  service->require_subcommand(1);
+  service->footer(
+      "  limber service install my.lua --fullscreen   writes the unit limber-my of this user, and prints it\n"
+      "  systemctl --user enable --now limber-my      starts it, now and with each session\n"
+      "  limber service remove my                     deletes the unit\n"
+      "Behind install come the scene and options of `limber play`. What the unit does: docs/installations.md.");
+  CLI::App* install =
+      service->add_subcommand("install", "writes a unit that plays a scene with options of play, from this folder");
+  install->add_option("--name", command.name, "of the service, behind limber-; left out: that of the scene")
+      ->type_name("NAME");
+  install->add_flag("--print", command.print, "prints the unit, writes nothing");
+  install->callback([&command] { command.what = ServiceCommand::What::install; });
+  CLI::App* remove = service->add_subcommand("remove", "deletes a unit that install has written");
+  remove->add_option("name", command.name, "which; left out: the only one")->type_name("NAME");
+  remove->callback([&command] { command.what = ServiceCommand::What::remove; });
+}
+
+// moves what is behind `service install` and is not its own to `words`
+void split_service_words(std::vector<std::string>& args, std::vector<std::string>& words) {
+  if (args.size() < 2 || args[0] != "service" || args[1] != "install") return;
+  std::vector<std::string> own(args.begin(), args.begin() + 2);
+  for (std::size_t i = 2; i < args.size(); i++) {
+    const std::string& word = args[i];
+    const bool named = word == "--name";
+    const bool help = word == "-h" || word == "--help";
+    (named || help || word == "--print" || word.starts_with("--name=") ? own : words).push_back(word);
+    if (named && i + 1 < args.size()) own.push_back(args[++i]);
+  }
+  args = std::move(own);
+}
+
 // what was wrong, as CLI11 tells it; for an option that there is not, the near one
 std::string usage_text(const CLI::App& app, const CLI::ParseError& error) {
   const CLI::App* command = app.get_subcommands().empty() ? &app : app.get_subcommands().front();
@@ -393,7 +336,7 @@ void add_commands(CLI::App& app, CommandLine& line) {
   app.footer(kExitCodes);
   app.set_version_flag("--version", fmt::format("limber {} ({})", version(), commit()));
   app.require_subcommand(1);
-  add_play(app, line.play);
+  add_play_options(*app.add_subcommand("play", "play a scene (the default command)"), line.play);
   add_inspect(app, line);
   add_describe(app, line);
   add_bench(app, line);
@@ -407,6 +350,7 @@ void add_commands(CLI::App& app, CommandLine& line) {
   CLI::App* annotate = app.add_subcommand("annotate", "definitions of all that scripts see, for editors (LuaCATS)");
   annotate->add_option("file", line.definitions, "where they go; left out: stdout")->type_name("FILE");
   add_doctor(app, line.doctor);
+  add_service(app, line.service);
   add_shell_files(app, line);
 }
 
@@ -418,6 +362,20 @@ int print_shell_file(const CLI::App& app, const std::string& command, const std:
   return 0;
 }
 
+int run_service(ServiceCommand& command) {
+  CLI::App play("", "play");
+  add_play_options(play, command.play);
+  std::vector<std::string> words = command.words;
+  std::reverse(words.begin(), words.end());
+  try {
+    play.parse(words);
+  } catch (const CLI::ParseError& error) {
+    print_notice("{}", usage_text(play, error));
+    return kUsage;
+  }
+  return service_command(command);
+}
+
 int run_command(int argc, char** argv) {
   CLI::App app{kAbout, "limber"};
   CommandLine line;
@@ -427,6 +385,7 @@ int run_command(int argc, char** argv) {
     return kUsage;
   }
   std::vector<std::string> args = with_command(argc, argv);
+  split_service_words(args, line.service.words);
   std::reverse(args.begin(), args.end());  // CLI11 takes them from the back
   try {
     app.parse(args);
@@ -457,6 +416,7 @@ int run_command(int argc, char** argv) {
   if (command == "annotate") return annotate_command(line.definitions);
   if (command == "bench") return bench_command(line.bench);
   if (command == "doctor") return doctor_command(line.doctor);
+  if (command == "service") return run_service(line.service);
   if (command == "completion" || command == "man") return print_shell_file(app, command, line.shell);
   return play_command(line.play);
 }

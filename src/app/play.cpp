@@ -1,13 +1,9 @@
 // Playing: the simulation's thread, the network's thread; signals, and the window or the status line on the main one.
 #include "app/play.h"
 
-#include <algorithm>
 #include <atomic>
-#include <chrono>
 #include <memory>
 #include <optional>
-#include <semaphore>
-#include <thread>
 
 #include <fmt/format.h>
 
@@ -17,13 +13,16 @@
 #include "app/query_doors.h"
 #include "app/render.h"
 #include "app/scene_watch.h"
-#include "app/window_show.h"
+#include "app/service_notifier.h"
+#include "app/show.h"
+#include "app/show_loop.h"
+#include "app/window.h"
 #include "base/build_info.h"
 #include "base/log.h"
+#include "base/log_file.h"
 #include "base/output.h"
 #include "base/system/resources.h"
 #include "base/system/signals.h"
-#include "base/system/thread.h"
 #include "base/text.h"
 #include "console/server.h"
 #include "engine/engine.h"
@@ -116,103 +115,6 @@ Result<EngineOptions> parse_engine(const PlayOptions& options, const std::string
   return engine;
 }
 
-using system::Signal;
-
-Signal listen(std::chrono::milliseconds limit = std::chrono::seconds(1)) { return system::wait_for_signal(limit); }
-
-void print_status(const EngineLink& link) {
-  const std::shared_ptr<const Snapshot> now = link.snapshots.read();
-  if (now == nullptr) return;
-  std::size_t joints = 0;
-  for (const RosterBody& body : now->roster->bodies) joints += body.joints.size();
-  print_notice("{:8.1f} s  tick {}  {}  {} bodies, {} joints  OSC in {} out {}{}", now->time, now->tick,
-               now->paused ? std::string("paused") : fmt::format("{:.2f} × real time", now->speed),
-               now->roster->bodies.size(), joints, link.counters.received.load(), link.counters.sent.load(),
-               link.counters.dropped.load() + link.counters.dropped_kernel.load() > 0 ? "  (some were lost)" : "");
-}
-
-// the engine on its thread; it calls the main thread when the scene has run, and when the show is over
-class Show {
- public:
-  explicit Show(Engine& engine) : engine_(engine), main_(system::this_thread()), thread_([this] { play(); }) {}
-  ~Show() { end(); }
-  Show(const Show&) = delete;
-  Show& operator=(const Show&) = delete;
-
-  bool started() const { return state_.load() >= State::started; }
-  bool over() const { return state_.load() == State::over; }
-  /// What the scene's run gave; once it has started.
-  const Result<void>& result() const { return result_; }
-  /// The first tick may come. `anyway`: after a fault of the scene's, too; the world is empty and waits for a good run.
-  void go(bool anyway) {
-    anyway_.store(anyway);
-    go_.release();
-  }
-  void end() {
-    if (!thread_.joinable()) return;
-    engine_.stop();
-    go_.release();
-    thread_.join();
-  }
-
- private:
-  enum class State : std::uint8_t { starting, started, over };
-
-  void play() {
-    system::name_this_thread("limber-sim");
-    result_ = engine_.start();
-    tell(State::started);
-    go_.acquire();
-    if (result_ || anyway_.load()) engine_.run();
-    tell(State::over);
-  }
-  void tell(State state) {
-    state_.store(state);
-    system::call_thread(main_);
-  }
-
-  Engine& engine_;
-  Result<void> result_;
-  std::atomic<State> state_{State::starting};
-  std::atomic<bool> anyway_{false};
-  std::counting_semaphore<2> go_{0};
-  std::uint64_t main_;
-  std::thread thread_;  // last: it starts when all else is there
-};
-
-// a thread that does not come back can't be joined: the files are whole, so the process may go
-[[noreturn]] void leave(std::string_view why) {
-  print_notice("{}", why);
-  hurry_output();
-  end_program(kInput);
-}
-
-// until the show is over by itself or somebody ends it; true: somebody did. `window`: null when headless
-bool watch(const Show& show, Engine& engine, const EngineLink& link, WindowShow* window) {
-  while (!show.over()) {
-    const WindowShow::End end = window != nullptr ? window->frame() : WindowShow::End::none;
-    if (end == WindowShow::End::lost) window = nullptr;
-    const bool closed = end == WindowShow::End::closed;
-    const Signal heard = listen(std::chrono::milliseconds(window != nullptr ? 0 : 1000));
-    if (heard == Signal::none && window == nullptr) print_status(link);
-    if (heard != Signal::end && !closed) continue;
-    hurry_output();
-    engine.stop();
-    // somebody waits: a second, or for less once there was another signal; that may have come with the first, as to a
-    // program and to its group, and is no reason to cut a tick of usual length
-    using Clock = std::chrono::steady_clock;
-    Clock::time_point last = Clock::now() + std::chrono::milliseconds(900);
-    while (!show.over() && Clock::now() < last) {
-      const auto left = std::chrono::ceil<std::chrono::milliseconds>(last - Clock::now());
-      if (listen(left) != Signal::end) continue;
-      last = std::min(last, Clock::now() + std::chrono::milliseconds(250));
-    }
-    if (!show.over()) leave("ended in the middle of a long tick: fewer substeps or solver_iterations would help");
-    return true;
-  }
-  return false;
-}
-
 int finish(const PlayOptions& options, Engine& engine, bool interrupted) {
   if (interrupted) print_notice("ended at {:.2f} s", engine.world().time());
   if (options.hash) print_result("hash {:016x} tick {}\n", engine.state_hash(), engine.world().tick());
@@ -250,24 +152,6 @@ Result<void> open_ports(const EngineLink& link, const OscOptions& osc, const Que
   return {};
 }
 
-// in a window an empty stage can wait until its scene is mended; nobody mends a take
-bool may_wait(const PlayOptions& options) {
-  return options.replay.empty() && !options.fast && !options.picture.headless && Window::has_display();
-}
-
-// the window, or null and why not
-std::unique_ptr<WindowShow> open_window(const PlayOptions& options, EngineLink& link) {
-  if (options.fast) return nullptr;
-  std::string why;
-  if (!options.picture.headless) {
-    auto window = WindowShow::open(options.picture, printable(options.scene), link);
-    if (window) return std::move(*window);
-    why = fmt::format(" ({})", window.error());
-  }
-  print_notice("playing headless{}; Ctrl+C ends it", why);
-  return nullptr;
-}
-
 // SIGUSR2 is a panic, whatever the main thread is doing
 class PanicSignal {
  public:
@@ -289,6 +173,8 @@ int play_scene(const PlayOptions& options, EngineOptions engine_options, const O
                const QueryWish& query_wish) {
   EngineLink link;
   const PanicSignal panic_signal(link);
+  ServiceNotifier notifier;
+  engine_options.on_turn = [&notifier] { notifier.turn(); };
   const std::string scene_file = engine_options.scene;
   Engine engine(link, std::move(engine_options));
   Network network(link, osc, live_offsets());
@@ -297,6 +183,7 @@ int play_scene(const PlayOptions& options, EngineOptions engine_options, const O
   if ((!options.fast || options.watch) && options.replay.empty()) scene_watch.emplace(link, engine, scene_file);
   QueryServer query(link, query_doors(network, osc.allow));
   const auto close = [&](bool ended) {
+    notifier.stopping();
     {
       Ending ending([&] { end_program(finish(options, engine, ended)); });
       engine.finish_saving();
@@ -316,26 +203,25 @@ int play_scene(const PlayOptions& options, EngineOptions engine_options, const O
   bool interrupted = false;
   {
     Show show(engine);
-    while (!show.started()) {
-      if (listen() == Signal::end) leave("ended while the scene was being read");
-    }
-    if (!show.result() && !may_wait(options)) return give_up(kInput, show.result().error());
+    ShowLoop loop(show, engine, link, notifier, options);
+    loop.wait_for_scene();
+    if (!show.result() && !loop.may_wait_for_mending()) return give_up(kInput, show.result().error());
     if (const Result<void> open = open_ports(link, osc, query_wish, network, query); !open)
       return give_up(kMachine, open.error());
     if (!options.fast) open_console(console);
-    const std::unique_ptr<WindowShow> window = open_window(options, link);
-    if (!show.result() && window == nullptr) return give_up(kInput, show.result().error());
-    show.go(window != nullptr);
+    const bool waits = loop.open_window();
+    if (!show.result() && !waits) return give_up(kInput, show.result().error());
+    show.go(waits);
     if (scene_watch) scene_watch->start();
     if (!show.result()) log_error("{}\nthe stage is empty and waits for the mended file", show.result().error());
-    // Xlib ends the program when the display goes: the show goes on in its place, and the program ends with that
+    // where Xlib ends the program when the display goes, the show goes on in its place, and the program ends with that
     Window::on_display_lost([&] {
       log_error("the display is lost; playing on headless");
-      const bool ended = watch(show, engine, link, nullptr);
+      const bool ended = loop.run_headless();
       show.end();
       end_program(close(ended));
     });
-    interrupted = watch(show, engine, link, window.get());
+    interrupted = loop.run();
     Window::on_display_lost({});
   }
   return close(interrupted);
@@ -367,16 +253,34 @@ int render_scene(const PlayOptions& options, EngineOptions engine_options) {
   return rendered.code != kFine ? rendered.code : finish(options, engine, rendered.cancelled);
 }
 
+Result<void> open_output(const PlayOptions& options) {
+  OutputSetup setup;
+  setup.mode = options.fast || options.picture.offline() ? OutputMode::batch : OutputMode::live;
+  setup.quiet = options.log.quiet;
+  if (!options.log.file.empty()) {
+    LogRotation rotation;
+    rotation.bytes = static_cast<std::uintmax_t>(options.log.megabytes * 1e6);
+    rotation.kept = options.log.kept;
+    Result<std::unique_ptr<LogFile>> log = LogFile::open(options.log.file, rotation);
+    if (!log) return Error{log.error()};
+    setup.log = std::move(*log);
+    setup.log_name = printable(options.log.file);
+  }
+  start_output(std::move(setup));
+  return {};
+}
+
 }  // namespace
 
 int play_command(const PlayOptions& options) {
-  const Result<void> enough = system::check_resources({24, 11 + options.threads, 512 * 1024});
+  const Result<void> enough = system::check_resources({24, 11 + options.threads, std::size_t{512} * 1024});
   if (!enough) return fail(kMachine, enough.error());
   system::block_signals();
-  start_output(options.fast || options.picture.offline() ? OutputMode::batch : OutputMode::live);
+  if (const Result<void> open = open_output(options); !open) return fail(kMachine, open.error());
   const bool replays = !options.replay.empty();
-  write_line(OutputTo::error, fmt::format("limber {} ({}): {}", version(), commit(),
-                                          printable(replays ? options.replay : options.scene)));
+  write_message(
+      MessageLevel::info,
+      fmt::format("limber {} ({}): {}", version(), commit(), printable(replays ? options.replay : options.scene)), "");
   if (Result<void> picture = check_picture(options.picture, options.duration); !picture)
     return fail(kUsage, picture.error());
   if (options.recover && options.picture.offline())

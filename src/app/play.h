@@ -10,6 +10,14 @@
 
 namespace limber {
 
+/// What becomes of messages.
+struct LogOptions {
+  std::string file;  ///< Empty: none.
+  double megabytes = 10;
+  int kept = 5;  ///< Old log files.
+  bool quiet = false;
+};
+
 /// The command line of `play`, as it was typed.
 struct PlayOptions {
   std::string scene = "scripts/arms.lua";
@@ -33,6 +41,7 @@ struct PlayOptions {
   std::string record;            ///< A take goes there.
   std::string replay;            ///< This take is played.
   bool current_scripts = false;  ///< A replay with the scripts of today.
+  LogOptions log;
   PictureOptions picture;
 };
 

@@ -67,9 +67,13 @@ void log_line(LogLevel level, std::string_view text, std::string_view source) {
     silent = log.throttle.ask(hash, log_time(), output_is_live());
   }
   if (!silent) return;
-  const char* mark = level == LogLevel::error ? "error: " : level == LogLevel::warning ? "warning: " : "";
+  const bool fault = level == LogLevel::error;
+  const char* mark = fault ? "error: " : level == LogLevel::warning ? "warning: " : "";
+  const MessageLevel severity = fault                        ? MessageLevel::error
+                                : level == LogLevel::warning ? MessageLevel::warning
+                                                             : MessageLevel::info;
   const std::string more = *silent > 0 ? fmt::format(" (and {} more since the last one)", *silent) : "";
-  print_notice("{}{}{}", mark, shown, more);
+  write_message(severity, fmt::format("{}{}{}", mark, shown, more));
 }
 
 void log_print(std::string_view text, OutputTo to) {
@@ -89,7 +93,7 @@ void log_print(std::string_view text, OutputTo to) {
   if (missing > 0)
     log_warning("print: {} line{} left out; at most {} a second are printed", missing, missing == 1 ? " is" : "s are",
                 kMostPrintedPerSecond);
-  write_line(to, text);
+  write_print(to, text);
 }
 
 void log_forget_sources() {

@@ -14,6 +14,9 @@
 
 #include "base/log.h"
 #include "base/output_writer.h"
+#include "base/system/clock.h"
+#include "base/system/service_manager.h"
+#include "base/text.h"
 
 namespace limber {
 
@@ -36,9 +39,12 @@ struct DescriptorDevice : OutputDevice {
 // never destroyed: its thread may be in a write when the program ends
 std::atomic<OutputWriter*> the_writer{nullptr};
 std::atomic<OutputMode> the_mode{OutputMode::batch};
+std::atomic<bool> is_quiet{false};
+std::atomic<bool> has_log{false};
 std::atomic<int> the_result_error{0};
 
 constexpr std::size_t lane_of(OutputTo to) { return static_cast<std::size_t>(to); }
+constexpr std::size_t kLogLane = 2;
 
 const char* stream_name(OutputTo to) { return to == OutputTo::out ? "standard output" : "standard error"; }
 
@@ -63,6 +69,33 @@ OutputStream stream_of(OutputTo to, OutputMode mode) {
     };
   }
   return stream;
+}
+
+OutputStream log_stream(std::unique_ptr<OutputDevice> device, const std::string& name) {
+  OutputStream stream;
+  stream.device = std::move(device);
+  stream.on_loss = [name](int error) {
+    log_warning("the log file {} {}; lines for it are lost until it takes them, the show goes on", name,
+                error == 0 ? "is too slow" : fmt::format("fails: {}", std::generic_category().message(error)));
+  };
+  stream.on_gap = [name](std::uint64_t lines) {
+    log_warning("the log file {} takes text again; {} line{} lost", name, lines, lines == 1 ? " is" : "s are");
+  };
+  return stream;
+}
+
+// "<4>warning: a line", for each line
+std::string journal_text(MessageLevel severity, std::string_view text) {
+  std::string out;
+  for (const std::string_view line : split(text, '\n'))
+    out += fmt::format("{}<{}>{}", out.empty() ? "" : "\n", static_cast<int>(severity), line);
+  return out;
+}
+
+void write_log(std::string_view kind, std::string_view text) {
+  OutputWriter* const writer = the_writer.load(std::memory_order_acquire);
+  if (writer == nullptr || !has_log.load()) return;
+  writer->write(kLogLane, fmt::format("{} {}{}\n", system::local_time_text(), kind, text));
 }
 
 void write_directly(int fd, std::string_view text) {
@@ -91,15 +124,43 @@ void write_line(OutputTo to, std::string_view line) noexcept {
   }
 }
 
-void start_output(OutputMode mode) {
+void write_message(MessageLevel severity, std::string_view text, std::string_view prefix) noexcept {
+  static const bool journal = system::standard_error_is_journal();
+  try {
+    write_log("", text);
+    if (is_quiet.load() && severity == MessageLevel::info) return;
+    write_line(OutputTo::error, journal ? journal_text(severity, text) : fmt::format("{}{}", prefix, text));
+  } catch (...) {  // no memory for it
+  }
+}
+
+void write_print(OutputTo to, std::string_view line) noexcept {
+  try {
+    write_log("print: ", line);
+  } catch (...) {  // no memory for it
+  }
+  write_line(to, line);
+}
+
+void start_output(OutputSetup setup) {
+  const OutputMode mode = setup.mode;
   std::vector<OutputStream> streams;
   streams.push_back(stream_of(OutputTo::out, mode));
   streams.push_back(stream_of(OutputTo::error, mode));
+  has_log.store(setup.log != nullptr);
+  if (setup.log != nullptr) streams.push_back(log_stream(std::move(setup.log), setup.log_name));
+  is_quiet.store(setup.quiet);
   auto writer = std::make_unique<OutputWriter>(std::move(streams));
   if (!writer->start()) return;
   writer->detach();
   the_mode.store(mode);
   the_writer.store(writer.release(), std::memory_order_release);
+}
+
+void start_output(OutputMode mode) {
+  OutputSetup setup;
+  setup.mode = mode;
+  start_output(std::move(setup));
 }
 
 bool output_is_live() {
@@ -117,11 +178,14 @@ void finish_output() {
   (void)writer->drain(lane_of(OutputTo::out),
                       live ? std::optional<std::chrono::nanoseconds>(kEndPatience) : std::nullopt);
   (void)writer->drain(lane_of(OutputTo::error), kEndPatience);
+  if (has_log.load()) (void)writer->drain(kLogLane, kEndPatience);
 }
 
 std::uint64_t lost_output_lines() {
   const OutputWriter* const writer = the_writer.load(std::memory_order_acquire);
-  return writer == nullptr ? 0 : writer->lost(lane_of(OutputTo::out)) + writer->lost(lane_of(OutputTo::error));
+  if (writer == nullptr) return 0;
+  const std::uint64_t lines = writer->lost(lane_of(OutputTo::out)) + writer->lost(lane_of(OutputTo::error));
+  return lines + (has_log.load() ? writer->lost(kLogLane) : 0);
 }
 
 bool write_result(std::string_view text) noexcept {

@@ -5,6 +5,8 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
+#include <string>
 #include <string_view>
 
 #include <fmt/format.h>
@@ -16,21 +18,36 @@ enum class OutputTo : std::uint8_t { out, error };  ///< Standard output, standa
 /// Writes a line. Before start_output() this thread waits for the device; a failure is ignored. [any]
 void write_line(OutputTo to, std::string_view line) noexcept;
 
-/// Writes "limber: " and the text to standard error. [any]
+/// The levels of syslog and of systemd's journal.
+enum class MessageLevel : std::uint8_t { error = 3, warning = 4, info = 6 };
+
+/// Writes a message to standard error, with the prefix, and to the log file. Where standard error is systemd's journal,
+/// each of its lines has the level in front instead. [any]
+void write_message(MessageLevel severity, std::string_view text, std::string_view prefix = "limber: ") noexcept;
 template <class... A>
 void print_notice(fmt::format_string<A...> f, A&&... a) noexcept {
   try {
-    write_line(OutputTo::error, fmt::format("limber: {}", fmt::format(f, std::forward<A>(a)...)));
+    write_message(MessageLevel::info, fmt::format(f, std::forward<A>(a)...));
   } catch (...) {  // no memory for it
   }
 }
+/// Writes a line that a script printed, to the log file too. [any]
+void write_print(OutputTo to, std::string_view line) noexcept;
 
 enum class OutputMode : std::uint8_t {
   live,   ///< A show: what a device does not take in time is lost and counted.
   batch,  ///< Nobody watches: standard output is waited for, standard error for up to a second.
 };
+class OutputDevice;
+struct OutputSetup {
+  OutputMode mode = OutputMode::live;
+  bool quiet = false;                 ///< Messages to standard error are warnings and errors only.
+  std::unique_ptr<OutputDevice> log;  ///< Gets every message, with its time; null: none.
+  std::string log_name;               ///< For messages about it.
+};
 /// From here on a thread of its own writes the text for people. Signals are blocked (system::block_signals). Without a
 /// thread left, text is written as before. [main, once]
+void start_output(OutputSetup setup);
 void start_output(OutputMode mode);
 bool output_is_live();
 /// Somebody has asked the program to end: from here on, no device is waited for longer than half a second. [any]

@@ -193,6 +193,7 @@ void Engine::run() {
   if (!replays()) requests_.open();
   clock_.restart(Clock::Time::clock::now());
   while (!stop_.load(std::memory_order_relaxed) && !finished()) {
+    options_.on_turn();
     // while time stood still a replay does not wait
     const bool at_once =
         replays() ? options_.fast || !player_->steps_next() : options_.fast && !stage_->transport.paused();

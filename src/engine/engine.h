@@ -50,6 +50,8 @@ struct EngineOptions {
   bool recover = false;       ///< `--recover`: what a run that did not end well has left is brought back.
   int threads = 1;            ///< That share out a step, 1 to Team::kMost, with the same result.
   std::vector<Message> sets;  ///< `--set`: the performer's hand before the first tick, after the preset.
+  /// Called by run() in each turn of its loop, at least 20 times a second, also while paused. It never waits. [sim]
+  std::function<void()> on_turn = [] {};
   /// Real time in seconds, for budgets and for the first second of a panic; for tests.
   std::function<double()> clock = system::clock_seconds;
 };

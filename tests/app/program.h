@@ -111,6 +111,7 @@ class Running {
   Running& operator=(const Running&) = delete;
 
   void signal(int number) const { ::kill(pid_, number); }
+  pid_t pid() const { return pid_; }
 
   /// Reads until `text` has come on stderr (or stdout); false when the output ended before.
   bool wait_for(const std::string& text, bool on_stdout = false) {

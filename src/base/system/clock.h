@@ -3,6 +3,7 @@
 
 #include <chrono>
 #include <cstdint>
+#include <string>
 
 namespace limber::system {
 
@@ -15,5 +16,8 @@ double thread_seconds();
 
 /// Time since 1970 as file systems report it, ns.
 std::int64_t file_clock_nanoseconds();
+
+/// The time of day here, for log lines: "2026-03-09 21:03:12.345+0100".
+std::string local_time_text();
 
 }  // namespace limber::system
