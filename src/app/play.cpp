@@ -128,25 +128,30 @@ int finish(const PlayOptions& options, Engine& engine, bool interrupted) {
   return kFine;
 }
 
-// a show without a console is a show; batches have none, as they have no ports
-void open_console(ConsoleServer& console) {
+// a show without a console is a show; batches have none, as they have no ports. `again`: a failure was said
+void open_console(ConsoleServer& console, bool again = false) {
+  if (!console.path().empty()) return;
   if (const Result<void> open = console.start(); !open) {
-    log_warning("there is no console: {}", open.error());
+    if (!again) log_warning("there is no console, it is tried again: {}", open.error());
     return;
   }
   print_notice("console {}", console.path());
 }
 
+// a port that another program had
+void open_query_again(const std::optional<ListenAddress>& at, QueryServer& query) {
+  if (at && query.port() == 0 && query.start(*at)) print_notice("{}", query_line(at, query));
+}
+
 using QueryWish = std::optional<std::vector<ListenAddress>>;
 
 // OSC's ports and OSCQuery's; the lines that say what is open
-Result<void> open_ports(const EngineLink& link, const OscOptions& osc, const QueryWish& wish, Network& network,
+Result<void> open_ports(const OscOptions& osc, const std::optional<ListenAddress>& at, Network& network,
                         QueryServer& query) {
   if (Result<void> open = network.start(); !open) return open;
-  const std::optional<ListenAddress> at = query_address(wish, effective_plan(osc, link.osc_plan.read().get()));
   Result<void> open = at ? query.start(*at) : Result<void>();
   if (!open && !osc.optional) return open;
-  if (!open) log_warning("{}", open.error());
+  if (!open) log_warning("{}; it is tried again every second", open.error());
   for (const std::string& line : network.lines()) print_notice("{}", line);
   print_notice("{}", query_line(at, query));
   return {};
@@ -181,7 +186,7 @@ int play_scene(const PlayOptions& options, EngineOptions engine_options, const O
   ConsoleServer console(link, {.folder = "", .scene = printable(options.scene)});
   std::optional<SceneWatch> scene_watch;
   if ((!options.fast || options.watch) && options.replay.empty()) scene_watch.emplace(link, engine, scene_file);
-  QueryServer query(link, query_doors(network, osc.allow));
+  QueryServer query(link, query_doors(network, osc.allow, options.query_names));
   const auto close = [&](bool ended) {
     notifier.stopping();
     {
@@ -206,8 +211,8 @@ int play_scene(const PlayOptions& options, EngineOptions engine_options, const O
     ShowLoop loop(show, engine, link, notifier, options);
     loop.wait_for_scene();
     if (!show.result() && !loop.may_wait_for_mending()) return give_up(kInput, show.result().error());
-    if (const Result<void> open = open_ports(link, osc, query_wish, network, query); !open)
-      return give_up(kMachine, open.error());
+    const std::optional<ListenAddress> at = query_address(query_wish, effective_plan(osc, link.osc_plan.read().get()));
+    if (const Result<void> open = open_ports(osc, at, network, query); !open) return give_up(kMachine, open.error());
     if (!options.fast) open_console(console);
     const bool waits = loop.open_window();
     if (!show.result() && !waits) return give_up(kInput, show.result().error());
@@ -220,6 +225,10 @@ int play_scene(const PlayOptions& options, EngineOptions engine_options, const O
       const bool ended = loop.run_headless();
       show.end();
       end_program(close(ended));
+    });
+    loop.each_second([&] {
+      open_query_again(at, query);
+      if (!options.fast) open_console(console, true);
     });
     interrupted = loop.run();
     Window::on_display_lost({});

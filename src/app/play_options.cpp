@@ -8,6 +8,7 @@
 #include <CLI/CLI.hpp>
 
 #include "app/picture_options.h"
+#include "app/query_doors.h"
 #include "base/team.h"
 #include "base/text.h"
 
@@ -51,6 +52,11 @@ void add_network(CLI::App& play, PlayOptions& o) {
                   "where OSCQuery and the remote panel (for a browser) are; default 127.0.0.1 and the number of "
                   "--osc-in; 0.0.0.0:9003 opens it to phones and tablets")
       ->type_name("[ADDR:]PORT|off");
+  play.add_option("--query-name", o.query_names,
+                  "another host name by which browsers may ask for this machine; may be given several times")
+      ->type_name("NAME")
+      ->allow_extra_args(false)
+      ->check(CLI::Validator([](std::string& text) { return host_name_fault(text); }, "", "host name"));
   play.add_flag("--osc-optional", o.osc_optional, "play on when a port can't be had");
 }
 

@@ -1,6 +1,8 @@
 // The two rooms beside each other meet here.
 #include "app/query_doors.h"
 
+#include <algorithm>
+#include <cctype>
 #include <memory>
 #include <utility>
 
@@ -20,8 +22,16 @@ Result<std::optional<std::vector<ListenAddress>>> parse_query(const std::string&
   return std::optional(std::move(*list));
 }
 
-QueryDoors query_doors(Network& network, std::vector<Cidr> allow) {
+std::string host_name_fault(const std::string& name) {
+  const bool plain = !name.empty() && name.size() <= 253 && std::ranges::all_of(name, [](unsigned char c) {
+    return std::isalnum(c) != 0 || c == '.' || c == '-' || c == '_';
+  });
+  return plain ? "" : fmt::format("'{}' is no host name; write it without http:// and port, such as vm.example", name);
+}
+
+QueryDoors query_doors(Network& network, std::vector<Cidr> allow, std::vector<std::string> names) {
   QueryDoors doors;
+  doors.names = std::move(names);
   doors.encode = [buffer = std::make_shared<PacketBuffer>()](const Message& message, std::string_view tags) {
     const std::span<const char> packet =
         tags.empty() ? encode_message(message, *buffer) : encode_tagged(message, tags, *buffer);

@@ -14,7 +14,10 @@ namespace limber {
 Result<std::optional<std::vector<ListenAddress>>> parse_query(const std::string& text);
 
 /// What the query room is handed. `network` outlives it.
-QueryDoors query_doors(Network& network, std::vector<Cidr> allow);
+QueryDoors query_doors(Network& network, std::vector<Cidr> allow, std::vector<std::string> names = {});
+
+/// Why a name of `--query-name` is none; empty: it is one.
+std::string host_name_fault(const std::string& name);
 
 /// Where it listens: as the command line says, else on this machine under the number by which OSC comes in (9003 when
 /// none does). Nothing: off.

@@ -97,9 +97,18 @@ void ShowLoop::print_status() const {
   if (prints_status_) write_line(OutputTo::error, "limber: " + line);
 }
 
+// what could not be had at the start
+void ShowLoop::retry() {
+  const auto now = std::chrono::steady_clock::now();
+  if (now - retried_ < kStatusEvery) return;
+  retried_ = now;
+  if (window_ == nullptr && waits_ && try_window()) waits_ = false;
+  retry_();
+}
+
 bool ShowLoop::run() {
   while (!show_.over()) {
-    if (window_ == nullptr && waits_ && try_window()) waits_ = false;
+    retry();
     const WindowShow::End end = window_ != nullptr ? window_->frame() : WindowShow::End::none;
     if (end == WindowShow::End::lost) return run_headless();
     const bool closed = end == WindowShow::End::closed;
@@ -113,7 +122,9 @@ bool ShowLoop::run() {
 }
 
 bool ShowLoop::run_headless() {
+  waits_ = false;
   while (!show_.over()) {
+    retry();
     const Signal heard = system::wait_for_signal(kStatusEvery);
     if (heard == Signal::none) print_status();
     if (heard != Signal::end) continue;

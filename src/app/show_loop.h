@@ -1,7 +1,10 @@
 // ShowLoop: the main thread while a show plays: signals, the window or the status line, the service manager.
 #pragma once
 
+#include <chrono>
+#include <functional>
 #include <memory>
+#include <utility>
 
 #include "app/play.h"
 #include "app/service_notifier.h"
@@ -24,6 +27,8 @@ class ShowLoop {
   bool may_wait_for_mending() const;
   /// Opens the window. False: there is none, which was reported, and none is waited for.
   bool open_window();
+  /// Called about once a second while the show plays: what could not be had at the start is tried again.
+  void each_second(std::function<void()> retry) { retry_ = std::move(retry); }
   /// Until the show is over by itself, or a signal or the window ends it; true: one of them did.
   bool run();
   /// The same, without the window, whose display is gone.
@@ -34,6 +39,7 @@ class ShowLoop {
   bool waits_for_display() const;
   bool try_window();
   void print_status() const;
+  void retry();
   void end_show();
 
   const Show& show_;
@@ -44,6 +50,8 @@ class ShowLoop {
   const bool prints_status_;
   std::unique_ptr<WindowShow> window_;
   bool waits_ = false;  // for a display
+  std::function<void()> retry_ = [] {};
+  std::chrono::steady_clock::time_point retried_;
 };
 
 }  // namespace limber

@@ -1,6 +1,7 @@
 // What a look-up's thread shares with the network thread lives as long as either.
 #include "osc/names.h"
 
+#include <condition_variable>
 #include <mutex>
 #include <system_error>
 #include <thread>
@@ -25,6 +26,7 @@ struct HostNames::Shared {
   std::mutex mutex;                                              // guards what follows
   std::map<std::string, std::optional<Result<Endpoint>>> found;  // by host; nothing: on its way
   bool news = false;
+  std::condition_variable ended;  // a look-up
 };
 
 HostNames::HostNames(LookUp look_up, std::function<void()> ring)
@@ -49,6 +51,7 @@ std::optional<Result<Endpoint>> HostNames::find(const std::string& host, std::ui
       shared->found[host] = std::move(at);
       shared->news = true;
     }
+    shared->ended.notify_all();
     shared->ring();
   };
   try {
@@ -60,9 +63,14 @@ std::optional<Result<Endpoint>> HostNames::find(const std::string& host, std::ui
   return std::nullopt;
 }
 
-Result<Endpoint> HostNames::wait_for(const std::string& host, std::uint16_t port) const {
-  if (const std::optional<Endpoint> at = at_once(host, port)) return *at;
-  return look_up_(host, port);
+std::optional<Result<Endpoint>> HostNames::wait_for(const std::string& host, std::uint16_t port,
+                                                    std::chrono::milliseconds limit) {
+  if (std::optional<Result<Endpoint>> at = find(host, port)) return at;
+  {
+    std::unique_lock lock(shared_->mutex);
+    shared_->ended.wait_for(lock, limit, [&] { return shared_->found[host].has_value(); });
+  }
+  return find(host, port);
 }
 
 bool HostNames::take_news() {
@@ -73,6 +81,11 @@ bool HostNames::take_news() {
 void HostNames::forget() {
   const std::scoped_lock lock(shared_->mutex);
   std::erase_if(shared_->found, [](const auto& entry) { return entry.second.has_value(); });
+}
+
+void HostNames::forget_failed() {
+  const std::scoped_lock lock(shared_->mutex);
+  std::erase_if(shared_->found, [](const auto& entry) { return entry.second && !entry.second->ok(); });
 }
 
 }  // namespace limber

@@ -1,6 +1,7 @@
 // HostNames: host names looked up off the network thread, since a name server may let one wait for seconds.
 #pragma once
 
+#include <chrono>
 #include <functional>
 #include <map>
 #include <memory>
@@ -23,12 +24,15 @@ class HostNames {
 
   /// Numbers and "localhost" at once; a name when its look-up has ended. Nothing: it is on its way.
   std::optional<Result<Endpoint>> find(const std::string& host, std::uint16_t port);
-  /// Waits for a name. [main, before the network thread runs]
-  Result<Endpoint> wait_for(const std::string& host, std::uint16_t port) const;
+  /// The same; waits for a look-up, but not longer than this. [main, before the network thread runs]
+  std::optional<Result<Endpoint>> wait_for(const std::string& host, std::uint16_t port,
+                                           std::chrono::milliseconds limit);
   /// Whether a look-up has ended since the last call.
   bool take_news();
   /// Names that were found are looked up anew from now on: a machine may have moved.
   void forget();
+  /// Names that were not found are looked up anew from now on.
+  void forget_failed();
 
  private:
   struct Shared;

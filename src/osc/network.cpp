@@ -17,6 +17,8 @@ namespace limber {
 namespace {
 
 constexpr std::int64_t kListenPause = 1'000'000'000;  // ns between two tries to open a port that is taken
+constexpr std::int64_t kNamePause = 5'000'000'000;    // ns between two look-ups of a name that is not known yet
+constexpr std::chrono::seconds kFirstLookUp{2};       // that the start waits for
 
 }  // namespace
 
@@ -47,7 +49,9 @@ Result<void> Network::start() {
   seen_plan_ = link_.osc_plan.read();
   std::vector<std::string> faults;
   if (const Result<void> opened = sender_.open(); !opened) faults.push_back(opened.error());
-  std::ranges::move(apply(effective_plan(options_, seen_plan_.get()), true), std::back_inserter(faults));
+  std::ranges::move(apply(effective_plan(options_, seen_plan_.get())), std::back_inserter(faults));
+  // a machine that has just been switched on may know no names yet
+  for (const std::string& fault : aim(kFirstLookUp)) log_warning("{}", fault);
   if (!faults.empty() && !options_.optional) {
     stop();
     return Error{fmt::format("{}", fmt::join(faults, "\n"))};
@@ -95,6 +99,7 @@ void Network::run() {
     receiver_.release_due();
     apply_new_plan();
     listen_again();
+    look_up_again();
     subscribers_.work();
     aim_at_subscribers();
     send_outbox();
@@ -108,9 +113,11 @@ void Network::wait_for_something() {
   waiting.push_back({.fd = wake_->fd()});
   for (const int fd : descriptors_) waiting.push_back({.fd = fd});
   std::optional<std::int64_t> wait = streams_.wait();
-  std::optional<std::int64_t> listen;
-  if (listen_at_) listen = std::max<std::int64_t>(0, *listen_at_ - clock_.steady());
-  for (const auto other : {receiver_.wait(), subscribers_.wait(), listen}) {
+  const auto until = [this](std::optional<std::int64_t> at) {
+    if (at) *at = std::max<std::int64_t>(0, *at - clock_.steady());
+    return at;
+  };
+  for (const auto other : {receiver_.wait(), subscribers_.wait(), until(listen_at_), until(names_at_)}) {
     if (other && (!wait || *other < *wait)) wait = other;
   }
   std::optional<std::chrono::nanoseconds> limit;
@@ -119,8 +126,8 @@ void Network::wait_for_something() {
   (void)system::wait_ready(waiting, limit);
 }
 
-// opens and closes what differs from the plan before; the texts of what went wrong
-std::vector<std::string> Network::apply(const OscPlan& plan, bool wait_for_names) {
+// opens and closes what differs from the plan before; the texts of what went wrong. aim() is next
+std::vector<std::string> Network::apply(const OscPlan& plan) {
   std::vector<std::string> faults = receiver_.listen(plan.listen);
   descriptors_ = receiver_.descriptors();
   listen_at_.reset();
@@ -128,25 +135,27 @@ std::vector<std::string> Network::apply(const OscPlan& plan, bool wait_for_names
   plan_ = plan;
   said_.clear();
   names_.forget();
-  std::ranges::move(aim(wait_for_names), std::back_inserter(faults));
   return faults;
 }
 
 // sends to those of the plan's targets whose addresses are known; what went wrong, each once a plan
-std::vector<std::string> Network::aim(bool wait_for_names) {
+std::vector<std::string> Network::aim(std::chrono::milliseconds wait) {
   std::vector<std::string> faults;
   targets_.clear();
+  names_at_.reset();
   for (const StreamTarget& wish : plan_.targets) {
     const std::optional<Result<Endpoint>> at =
-        wait_for_names ? names_.wait_for(wish.host, wish.port) : names_.find(wish.host, wish.port);
+        wait.count() > 0 ? names_.wait_for(wish.host, wish.port, wait) : names_.find(wish.host, wish.port);
     if (!at) continue;
     if (*at) {
       targets_.push_back({wish, **at});
       continue;
     }
-    std::string fault =
-        fmt::format("OSC can't stream to {}:{}: {}; correct it in the scene or with --osc-out HOST:PORT",
-                    printable(wish.host), wish.port, at->error());
+    names_at_ = clock_.steady() + kNamePause;
+    std::string fault = fmt::format(
+        "OSC can't stream to {}:{}: {}; it is looked up again every five seconds. Correct a wrong name in the scene or "
+        "with --osc-out HOST:PORT",
+        printable(wish.host), wish.port, at->error());
     if (std::ranges::find(said_, fault) != said_.end()) continue;
     said_.push_back(fault);
     faults.push_back(std::move(fault));
@@ -175,8 +184,20 @@ void Network::apply_new_plan() {
   const OscPlan plan = said ? effective_plan(options_, seen_plan_.get()) : plan_;
   const bool other = plan != plan_;
   if (!other && !found) return;
-  for (const std::string& fault : other ? apply(plan, false) : aim(false)) log_error("{}", fault);
+  const std::vector<std::string> before = lines();
+  std::vector<std::string> faults;
+  if (other) faults = apply(plan);
+  std::ranges::move(aim(), std::back_inserter(faults));
+  for (const std::string& fault : faults) log_error("{}", fault);
+  if (!other && lines() == before) return;  // a name is not found still
   for (const std::string& line : lines()) log_info("{}", line);
+}
+
+// it was said that they are not found
+void Network::look_up_again() {
+  if (!names_at_ || clock_.steady() < *names_at_) return;
+  names_.forget_failed();
+  (void)aim();
 }
 
 // a port that another program holds, or an address that is not there yet: it was said, and is had when it is free

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <atomic>
+#include <chrono>
 #include <memory>
 #include <mutex>
 #include <string>
@@ -50,11 +51,12 @@ class Network {
  private:
   void run();
   void wait_for_something();
-  std::vector<std::string> apply(const OscPlan& plan, bool wait_for_names);
-  std::vector<std::string> aim(bool wait_for_names);
+  std::vector<std::string> apply(const OscPlan& plan);
+  std::vector<std::string> aim(std::chrono::milliseconds wait = {});
   void renew_lines();
   void apply_new_plan();
   void listen_again();
+  void look_up_again();
   void aim_at_subscribers();
   void aim_streams();
   void pong(const Origin& to);
@@ -87,6 +89,7 @@ class Network {
   std::vector<Outgoing> outgoing_;
   std::vector<int> descriptors_;
   std::optional<std::int64_t> listen_at_;  // when ports that could not be had are tried again, ns
+  std::optional<std::int64_t> names_at_;   // when names that were not found are, ns
   std::thread thread_;
   std::atomic<bool> stop_{false};
 

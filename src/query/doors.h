@@ -6,6 +6,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "base/message.h"
 
@@ -19,6 +20,8 @@ struct QueryDoors {
   std::function<void(const Origin& origin, std::string packet)> take;
   /// Where OSC comes in by UDP, if it does. [query]
   std::function<std::optional<std::uint16_t>()> osc_port = [] { return std::nullopt; };
+  /// Names by which browsers may ask for this machine, beside its own. [query]
+  std::vector<std::string> names;
   /// Whether this address may connect (IPv4, host order). [query]
   std::function<bool(std::uint32_t ip)> allowed = [](std::uint32_t) { return true; };
 };

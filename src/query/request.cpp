@@ -130,9 +130,10 @@ std::optional<HttpAnswer> refuse_stranger(const HttpRequest& request, const Host
       name == "localhost" || system::is_ip_address(name) ||
       std::any_of(info.names.begin(), info.names.end(), [&](const std::string& n) { return lower(n) == name; });
   if (!ours) {
-    return refusal(403,
-                   fmt::format("'{}' is no name of this machine; ask for its number (such as 127.0.0.1) or its name",
-                               printable(shortened(name, 100))));
+    return refusal(
+        403, fmt::format("'{}' is no name of this machine; ask for its number (such as 127.0.0.1) or its name, or "
+                         "allow this one by --query-name",
+                         printable(shortened(name, 100))));
   }
   // a browser says which site's page asks
   if (request.origin && lower(*request.origin) != "http://" + host)

@@ -29,18 +29,19 @@ namespace {
 constexpr const char* kCure =
     "choose another with --query [ADDR:]PORT, or play without with --query off or --osc-optional";
 
-// as a machine beside this one may call it
-std::vector<std::string> own_names() {
+// as a machine beside this one may call it; and further names
+std::vector<std::string> own_names(const QueryDoors& doors) {
+  std::vector<std::string> names = doors.names;
   const std::string name = system::host_name();
-  if (name.empty()) return {};
-  return {name, fmt::format("{}.local", name)};
+  if (!name.empty()) names.insert(names.end(), {name, fmt::format("{}.local", name)});
+  return names;
 }
 
 }  // namespace
 
 struct QueryServer::Running {
-  Running(EngineLink& link, QueryDoors doors, const std::shared_ptr<system::Wake>& bell)
-      : wake(bell), hall(link, std::move(doors), own_names()) {}
+  Running(EngineLink& link, const QueryDoors& doors, const std::shared_ptr<system::Wake>& bell)
+      : wake(bell), hall(link, doors, own_names(doors)) {}
   ~Running() {
     io.stop();
     if (thread.joinable()) thread.join();

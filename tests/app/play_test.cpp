@@ -1,4 +1,8 @@
 // Playing: the first line, what goes to stdout, ending by time, by Ctrl+C and by a fault.
+#include <memory>
+#include <regex>
+#include <thread>
+
 #include "app/program.h"
 #include "app/taken_port.h"
 
@@ -65,6 +69,45 @@ TEST(Play, CtrlCEndsCleanly) {
     EXPECT_NE(ran.err.find("limber: ended at "), std::string::npos) << ran.err;
     EXPECT_TRUE(ran.out.starts_with("hash ")) << ran.out;
   }
+}
+
+TEST(Play, PortsThatAreTakenAreTriedAgain) {
+  const Folder folder;
+  auto udp = std::make_unique<TakenPort>(SOCK_DGRAM);
+  auto tcp = std::make_unique<TakenPort>(SOCK_STREAM);
+  const std::string osc = "127.0.0.1:" + udp->number();
+  const std::string web = "127.0.0.1:" + tcp->number();
+  Running running(limber({folder.file("s.lua", kBall), "--headless", "--osc-optional", "--osc-in", osc, "--osc-out",
+                          "off", "--query", web}));
+  ASSERT_TRUE(running.wait_for("playing headless"));
+  EXPECT_NE(running.err().find("it is tried again every second"), std::string::npos) << running.err();
+  ASSERT_TRUE(running.wait_for("OSC in 0 out"));  // a status line, and so another try
+  ASSERT_TRUE(running.wait_for("s  tick"));
+  udp.reset();
+  tcp.reset();
+  EXPECT_TRUE(running.wait_for("OSC in " + osc)) << running.err();
+  EXPECT_TRUE(running.wait_for("remote panel http://" + web + "/")) << running.err();
+  running.signal(SIGTERM);
+  const Ran ran = running.finish();
+  EXPECT_EQ(ran.code, 0) << ran.err;
+  const std::regex reports("can't listen");
+  EXPECT_EQ(std::distance(std::sregex_iterator(ran.err.begin(), ran.err.end(), reports), {}), 2) << ran.err;
+}
+
+TEST(Play, AStallIsReportedOnce) {
+  const Folder folder;
+  Running running(limber({folder.file("s.lua", kBall), "--osc-in", "off", "--osc-out", "off", "--query", "off"}));
+  ASSERT_TRUE(running.wait_for("s  tick"));
+  for (int i = 0; i < 2; i++) {
+    running.signal(SIGSTOP);
+    std::this_thread::sleep_for(std::chrono::milliseconds(700));
+    running.signal(SIGCONT);
+    ASSERT_TRUE(running.wait_for("warning: the show stood still for ")) << running.err();
+  }
+  running.signal(SIGTERM);
+  const Ran ran = running.finish();
+  const std::regex reports("the show stood still for [0-9.]+ s");
+  EXPECT_EQ(std::distance(std::sregex_iterator(ran.err.begin(), ran.err.end(), reports), {}), 1) << ran.err;
 }
 
 // as `timeout` sends them, to the program and to its group

@@ -51,6 +51,24 @@ std::string text_message(std::string_view address, std::string_view word) {
   return Bytes().text(address).text(",s").text(word).str();
 }
 
+TEST(Query, OtherNamesOfTheMachineCanBeAllowed) {
+  const WebPlayer player({"--query-name", "vm.example", "--query-name", "Stage.example"});
+  ASSERT_NE(player.web, 0);
+  for (const auto& [name, status] : {std::pair("vm.example", 200), std::pair("stage.example", 200),
+                                     std::pair("other.example", 403), std::pair("vm.example.other", 403)}) {
+    WebClient client(player.web);
+    client.send("GET /scene/wind HTTP/1.1\r\nHost: " + std::string(name) + ":9003\r\nOrigin: http://" + name +
+                ":9003\r\n\r\n");
+    EXPECT_EQ(client.reply().status, status) << name;
+  }
+  WebClient client(player.web);
+  client.send("GET /scene/wind HTTP/1.1\r\nHost: vm.example\r\nOrigin: http://other.example\r\n\r\n");
+  EXPECT_EQ(client.reply().status, 403) << "a page of another site";
+  const Ran ran = run({"play", "--query-name", "http://vm.example"});
+  EXPECT_EQ(ran.code, 2);
+  EXPECT_NE(ran.err.find("write it without http:// and port"), std::string::npos) << ran.err;
+}
+
 TEST(Query, OneHandsChangeReachesTheOthersOnceWhateverTheirWay) {
   const WebPlayer player;
   ASSERT_NE(player.web, 0);

@@ -143,7 +143,7 @@ class Browser:
                 said.append(str(event["params"]["exceptionDetails"]))
             if event.get("method") == "Log.entryAdded" and event["params"]["entry"]["level"] == "error":
                 said.append(event["params"]["entry"]["text"])
-        return [s for s in said if "ERR_CONNECTION_REFUSED" not in s]
+        return [s for s in said if "ERR_CONNECTION_REFUSED" not in s and "ERR_CONNECTION_RESET" not in s]
 
     def asked(self):
         return [e["params"]["request"]["url"] for e in self.events if e.get("method") == "Network.requestWillBeSent"]
@@ -155,6 +155,61 @@ class Browser:
 
 # the row of a value, by its label in an open section
 ROW = "[...document.querySelectorAll('#parameters .row')].find(r => r.querySelector('.label').textContent === '%s')"
+
+
+def touch(browser, kind, *points):
+    browser.call("Input.dispatchTouchEvent", type=kind, touchPoints=[{"x": x, "y": y} for x, y in points])
+
+
+def swipe(browser, start, by):
+    """A finger that goes down, moves in steps and comes up; each step is a frame of the page's."""
+    touch(browser, "touchStart", start)
+    for step in range(1, 21):
+        touch(browser, "touchMove", (start[0] + by[0] * step / 20, start[1] + by[1] * step / 20))
+        browser.eval("new Promise(r => requestAnimationFrame(r))")
+    touch(browser, "touchEnd")
+
+
+def fingers(browser, limber):
+    """Touch on a phone's screen: what scrolls sets nothing, what moves sideways sets."""
+    browser.call("Emulation.setTouchEmulationEnabled", enabled=True, maxTouchPoints=1)
+    wind = ROW % "wind"
+    limber.send("/scene/wind", 2)
+    browser.until(f"{wind}.querySelector('.number').value === '2'", "a value before it is touched")
+    browser.eval(f"{wind}.scrollIntoView({{ block: 'end' }})")
+    browser.eval("new Promise(r => setTimeout(r, 100))")
+
+    def place():
+        return browser.eval(f"(() => {{ const b = {wind}.querySelector('.bar').getBoundingClientRect();"
+                            " return [b.left, b.top + b.height / 2, b.width]; })()")
+    x, y, width = place()
+    browser.eval("window.heard = []; window.before = document.scrollingElement.scrollTop")
+    swipe(browser, (x + 0.8 * width, y), (0, -200))
+    browser.until("document.scrollingElement.scrollTop > before + 100", "a swipe up on a slider scrolls the page")
+    x, y, width = place()
+    touch(browser, "touchStart", (x + 0.8 * width, y))
+    touch(browser, "touchEnd")
+    browser.eval("new Promise(r => setTimeout(r, 300))")
+    must(browser.eval("heard.every(v => v === 2)"), "and sets nothing, and neither does a tap")
+    swipe(browser, (x + 0.3 * width, y), (0.4 * width + 8, 0))
+    browser.until("Math.abs(heard[heard.length - 1] - 6) < 0.4", "a finger that moves sideways sets, by how far it moves")
+    # the header
+    browser.eval("link.send('/preset/store', 's', ['calm'])")
+    browser.until("[...document.getElementById('presets').options].some(o => o.value === 'calm')", "presets are in the header")
+    limber.send("/scene/wind", 9)
+    browser.until("heard[heard.length - 1] === 9", "another value")
+    browser.eval("(() => { const s = document.getElementById('presets'); s.value = 'calm'; s.dispatchEvent(new Event('change')); })()")
+    browser.until("Math.abs(heard[heard.length - 1] - 6) < 0.4", "a preset is recalled")
+    browser.eval("document.getElementById('panic').click()")
+    browser.until("document.getElementById('panic').textContent === 'PANIC ON'", "PANIC is in the header")
+    limber.send("/transport/panic_end")
+    browser.until("document.getElementById('panic').textContent === 'PANIC'", "and shows when another hand ends it")
+    browser.eval("document.getElementById('record').click()")
+    browser.until("document.getElementById('take').textContent !== ''", "a take is recorded")
+    browser.eval("document.getElementById('record').click()")
+    browser.until("document.getElementById('take').textContent === ''", "and ended")
+    must(browser.eval("document.documentElement.scrollWidth") <= 360, "the header fits a phone")
+    browser.call("Emulation.setTouchEmulationEnabled", enabled=False)
 
 
 def play(browser, limber, shots):
@@ -239,6 +294,7 @@ def play(browser, limber, shots):
     must(browser.eval("[...document.querySelectorAll('main button, main select, main input:not([type=checkbox])')]"
                       ".filter(e => e.getClientRects().length && !e.classList.contains('small'))"
                       ".every(e => e.getBoundingClientRect().height >= 30)"), "what is touched is large enough")
+    fingers(browser, limber)
     if shots:
         browser.shot(os.path.join(shots, "360x740.png"))
         browser.eval("document.querySelector('[data-path=\"/physics/body/arm%20one\"]').open = true")

@@ -4,7 +4,9 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <atomic>
 #include <future>
+#include <thread>
 
 #include "base/log.h"
 #include "osc/bad_packets.h"
@@ -228,6 +230,50 @@ TEST(Network, NamesAreLookedUpBesides) {
   while (log_count(LogLevel::error) == errors) ASSERT_TRUE(named.receive());
   EXPECT_EQ(log_count(LogLevel::error), errors + 1);
   network.stop();
+  log_to_stderr(true);
+}
+
+// a machine that has just been switched on knows no names yet
+TEST(Network, ANameThatIsNotKnownYetIsLookedUpAgain) {
+  log_to_stderr(false);
+  FakeEngine engine;
+  const Client client;
+  std::atomic<std::int64_t> ns{5'000'000'000};
+  std::atomic<int> looked_up{0};
+  std::atomic<bool> known{false};
+  NetClock clock;
+  clock.steady = [&ns] { return ns.load(); };
+  const LookUp look_up = [&](const std::string&, std::uint16_t port) -> Result<Endpoint> {
+    const bool found = known.load();
+    looked_up++;
+    if (!found) return Error{"no IPv4 address"};
+    return Endpoint{0x7f000001, port};
+  };
+  OscOptions options;
+  options.in = *parse_osc_in("off");
+  options.out = *parse_osc_out("later.example:" + std::to_string(client.end().port) + ",streams=none");
+  Network network(engine.link, options, kTestOffsets, clock, look_up);
+  const auto texts = [] { return log_count(LogLevel::warning) + log_count(LogLevel::error); };
+  const std::uint64_t before = texts();
+  ASSERT_TRUE(network.start().ok());
+  EXPECT_EQ(network.lines().at(1), "OSC out off");
+  EXPECT_EQ(texts(), before + 1);
+  const auto pass = [&] {
+    ns += 5'000'000'000;
+    engine.link.wake_network();
+    std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  };
+  while (looked_up.load() < 4) pass();
+  EXPECT_EQ(texts(), before + 1) << "said once";
+  const std::uint64_t newest = log_newest();
+  known = true;
+  while (network.lines().at(1) == "OSC out off") pass();
+  engine.say({Outgoing::To::targets, {}, {"/there", {}}});
+  EXPECT_EQ(client.receive(), Bytes().text("/there").text(",").str());
+  network.stop();
+  int said = 0;
+  for (const LogLine& line : log_since(newest)) said += line.text.starts_with("OSC out later.example") ? 1 : 0;
+  EXPECT_EQ(said, 1);
   log_to_stderr(true);
 }
 

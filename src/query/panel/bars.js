@@ -3,6 +3,7 @@
 
 const bars = (() => {
   const STEPS = 1000;
+  const THUMB = 14;  // pixels, as in the style
 
   // where on the bar (0 .. 1) a value stands, and back
   function scale(min, max, usual) {
@@ -19,6 +20,54 @@ const bars = (() => {
       to: (v) => 0.5 + 0.5 * Math.sign(v) * Math.pow(Math.abs(v) / bound, 1 / power),
       from: (p) => Math.min(max, Math.max(min, bound * Math.sign(p - 0.5) * Math.pow(Math.abs(2 * p - 1), power))),
     };
+  }
+
+  // A hand on a bar. Mouse and keys act at once. A finger acts from where it moves sideways, by how far it moves: a
+  // touch alone sets nothing, and a swipe up or down scrolls the page (touch-action: pan-y in the style).
+  const SIDEWAYS = 8;  // pixels until a finger acts
+
+  function follow(bar, range, begin, move, end) {
+    let pointer = null;  // of the hand
+    let from = 0;        // where it acts from, pixels
+    let start = 0;       // and what the bar was there, 0 .. 1
+    let acts = false;
+    const width = () => Math.max(1, bar.getBoundingClientRect().width - THUMB);
+    const place = (event) => (event.clientX - bar.getBoundingClientRect().left - THUMB / 2) / width();
+    const held = (at) => Math.min(1, Math.max(0, at));
+    function act() {
+      acts = true;
+      bar.setPointerCapture(pointer);
+      begin();
+    }
+    function leave(event) {
+      if (event.pointerId !== pointer) return;
+      pointer = null;
+      if (acts) end();
+      acts = false;
+    }
+    bar.addEventListener('pointerdown', (event) => {
+      if (pointer !== null || event.button !== 0) return;
+      pointer = event.pointerId;
+      from = event.clientX;
+      start = range.value / STEPS;
+      if (event.pointerType !== 'mouse') return;
+      event.preventDefault();
+      range.focus({ preventScroll: true });
+      start = held(place(event));
+      act();
+      move(start);
+    });
+    bar.addEventListener('pointermove', (event) => {
+      if (event.pointerId !== pointer) return;
+      if (!acts) {
+        if (Math.abs(event.clientX - from) < SIDEWAYS) return;
+        from = event.clientX;
+        start = range.value / STEPS;
+        act();
+      }
+      move(held(start + (event.clientX - from) / width()));
+    });
+    for (const name of ['pointerup', 'pointercancel', 'lostpointercapture']) bar.addEventListener(name, leave);
   }
 
   // five digits of what the hand moves: nobody wants 0.30000001
@@ -81,15 +130,16 @@ const bars = (() => {
       widget.release();
     }
     if (range) {
-      range.addEventListener('pointerdown', hold);
-      for (const end of ['pointerup', 'pointercancel', 'change', 'blur']) range.addEventListener(end, release);
-      range.addEventListener('input', () => {
-        const value = stretch.from(range.value / STEPS);
+      const set = (at) => {
+        const value = stretch.from(at);
         widget.value = options.whole ? Math.round(value) : Number(value.toPrecision(5));
         paint(widget.value);
         number.value = shown(widget.value, options.whole);
         changed(widget.value);
-      });
+      };
+      follow(range.parentNode, range, hold, (at) => { range.value = Math.round(at * STEPS); set(at); }, release);
+      for (const end of ['change', 'blur']) range.addEventListener(end, release);
+      range.addEventListener('input', () => set(range.value / STEPS));
       range.addEventListener('keydown', (event) => {
         if (event.key !== 'Home' && event.key !== 'End' && !/^(Arrow|Page)/.test(event.key)) return;
         widget.held = false;

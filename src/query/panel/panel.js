@@ -206,6 +206,30 @@
   }
   function press(action) { link.send('/transport/' + action, 'N', []); }
 
+  // ---- panic, presets, takes
+
+  function pressed(id, on) { byId(id).setAttribute('aria-pressed', String(Boolean(on))); }
+  function showPanic([on]) {
+    pressed('panic', on);
+    byId('panic').textContent = on ? 'PANIC ON' : 'PANIC';
+  }
+  function showPresets([names]) {
+    const list = byId('presets');
+    list.replaceChildren(new Option('preset', ''));
+    for (const name of names.split('\n').filter(Boolean)) list.append(new Option(name, name));
+    list.disabled = list.options.length === 1;
+  }
+  // of the take: its name, whether it is replayed, whether it plays in the place of the show
+  const take = { name: '', replays: false, plays: false };
+  function showTake(key) {
+    return ([value]) => {
+      take[key] = value;
+      byId('take').textContent = take.name;
+      pressed('record', take.name && !take.replays);
+      pressed('play-take', take.plays);
+    };
+  }
+
   // ---- what comes and goes
 
   let due = 0;
@@ -255,6 +279,14 @@
   byId('step').addEventListener('click', () => press('step'));
   byId('reset').addEventListener('click', () => press('reset'));
   byId('clear').addEventListener('click', clearMessages);
+  byId('panic').addEventListener('click', () => press('panic'));
+  byId('presets').addEventListener('change', () => {
+    const list = byId('presets');
+    if (list.value) link.send('/preset/recall', 's', [list.value]);
+    list.value = '';  // the same one can be chosen again
+  });
+  byId('record').addEventListener('click', () => link.send(take.name && !take.replays ? '/take/stop' : '/take/record', '', []));
+  byId('play-take').addEventListener('click', () => link.send(take.plays ? '/take/stop' : '/take/play', '', []));
   let typing = 0;
   byId('search').addEventListener('input', () => { clearTimeout(typing); typing = setTimeout(search, 150); });
   document.addEventListener('keydown', (event) => {
@@ -267,6 +299,11 @@
   link.listen('/physics/sim/time', showTime);
   link.listen('/physics/sim/tick', ([tick]) => { byId('tick').textContent = tick; });
   link.listen('/transport/speed_reached', ([speed]) => { byId('speed').textContent = speed.toFixed(2); });
+  link.listen('/physics/sim/panicked', showPanic);
+  link.listen('/preset/names', showPresets);
+  link.listen('/take/name', showTake('name'));
+  link.listen('/take/replays', showTake('replays'));
+  link.listen('/take/plays', showTake('plays'));
   link.listen('/osc/received', lamp('in'));
   link.listen('/osc/sent', lamp('out'));
   link.connect();
