@@ -23,6 +23,7 @@ class OutputWindow {
   /// Somebody has closed it. [main]
   bool closed() const { return window_->closed(); }
   void toggle_full_screen() { window_->toggle_full_screen(); }
+  bool has_events() const { return window_->has_events(); }
   /// Keys that were pressed in it since the last call. [main]
   std::vector<InputEvent> take_keys();
   /// Its own picture between two snapshots; the first window's context is current before and after. [main]

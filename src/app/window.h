@@ -58,6 +58,8 @@ class Window {
   double content_scale() const;
   /// What hands have done since the last call, for the panel. [main]
   std::vector<InputEvent> take_events();
+  /// Whether hands have done something since then. [main]
+  bool has_events() const { return !events_.empty() || mouse_.any(); }
   MouseMoves take_mouse();
   /// What the keyboard prints on keys that act by their place. [main]
   KeyLabels key_labels() const;

@@ -30,6 +30,25 @@ Orbit orbit_of(const CameraView& camera) {
   return {lens.eye, lens.target};
 }
 
+// the same poses, forms and values
+bool looks_alike(const Snapshot& a, const Snapshot& b) {
+  if (a.tick != b.tick || a.drawing != b.drawing || a.visuals_version != b.visuals_version ||
+      a.live.size() != b.live.size() || a.overlay.size() != b.overlay.size())
+    return false;
+  const LiveOffsets& at = live_offsets();
+  for (const RosterBody& body : b.roster->bodies) {
+    if (a.live[body.enabled_at] != b.live[body.enabled_at]) return false;
+    for (const std::uint32_t part : body.parts) {
+      const auto same = [&](std::uint32_t offset, std::size_t width) {
+        const auto* const first = a.live.data() + part + offset;
+        return std::equal(first, first + width, b.live.data() + part + offset);
+      };
+      if (!same(at.part_position, 3) || !same(at.part_rotation, 4)) return false;
+    }
+  }
+  return true;
+}
+
 std::vector<Arg> numbers(const Vec3& v) { return {Arg::of(v.x), Arg::of(v.y), Arg::of(v.z)}; }
 
 }  // namespace
@@ -227,11 +246,25 @@ void WindowShow::tell_rate(double now) {
   told_ = now;
 }
 
+// a show that is paused and that nobody touches needs few pictures
+void WindowShow::look_for_changes(double now) {
+  const std::shared_ptr<const Snapshot> newest = link_.snapshots.read();
+  const int width = window_->width();
+  const int height = window_->height();
+  const bool moved = newest != nullptr && (seen_ == nullptr || !newest->paused || !looks_alike(*seen_, *newest));
+  const bool hands = window_->has_events() || (output_ != nullptr && output_->has_events()) || gui_->has_events();
+  if (!moved && !hands && width == seen_width_ && height == seen_height_) return;
+  seen_ = newest;
+  seen_width_ = width;
+  seen_height_ = height;
+  pace_.touch(now);
+}
+
 WindowShow::End WindowShow::frame() {
   // a screen that waits for nothing would be drawn without end
   const double rate = window_->refresh_rate();
   double now = system::clock_seconds();
-  const double rest = drawn_ + 0.95 / rate - now;
+  const double rest = pace_.rest(now, rate);
   window_->poll(rest > 0.001 ? rest : 0);
   now = system::clock_seconds();
   if (window_->lost()) {
@@ -239,8 +272,9 @@ WindowShow::End WindowShow::frame() {
     return End::lost;
   }
   if (window_->closed()) return End::closed;
-  if (now < drawn_ + 0.9 / rate) return End::none;  // something came before its time
-  drawn_ = now;
+  look_for_changes(now);
+  if (!pace_.due(now, rate)) return End::none;  // something came before its time
+  pace_.draw(now);
   look_at_snapshots(now);
   if (now_ == nullptr) return End::none;
   if (now - shaders_looked_ > kShadersEvery) {

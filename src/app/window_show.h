@@ -4,6 +4,7 @@
 #include <memory>
 #include <string>
 
+#include "app/frame_pace.h"
 #include "app/output_window.h"
 #include "app/picture_hand.h"
 #include "app/picture_options.h"
@@ -37,6 +38,7 @@ class WindowShow {
              const PanelSettings& settings, std::string scene, EngineLink& link);
 
   void look_at_snapshots(double now);
+  void look_for_changes(double now);
   void look_from(const Orbit& orbit);
   void hear_hands(int width, int height, double now);
   void act(HotkeyAction action);
@@ -67,7 +69,10 @@ class WindowShow {
   Orbit orbit_;          // while a hand moves it
   Orbit home_;           // as it was at first
   double moved_ = -1;    // when one did last, s
-  double drawn_ = 0;     // when the last picture began, s
+  FramePace pace_;
+  std::shared_ptr<const Snapshot> seen_;  // at the last change
+  int seen_width_ = 0;
+  int seen_height_ = 0;
   double told_ = 0;
   double shaders_looked_ = 0;
   int pictures_ = 0;  // since told_

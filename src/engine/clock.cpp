@@ -8,6 +8,8 @@ namespace limber {
 namespace {
 using Seconds = std::chrono::duration<double>;
 
+constexpr double kMostBehind = 0.25;  // s
+
 Clock::Time after(Clock::Time t, double seconds) {
   return t + std::chrono::duration_cast<std::chrono::steady_clock::duration>(Seconds(seconds));
 }
@@ -22,7 +24,9 @@ void Clock::restart(Time now) {
 
 void Clock::tick(Time now, double tick_seconds, double speed) {
   if (!started_) restart(now);
-  if (Seconds(now - due_).count() > 0.25) {
+  const double behind = Seconds(now - due_).count();
+  lost_ = behind > kMostBehind ? behind : 0;
+  if (lost_ > 0) {
     due_ = now;
     let_go_++;
   }
@@ -54,6 +58,14 @@ double Clock::close_window(Time now, double tick_seconds) {
   window_start_ = now;
   window_seconds_ = tick_seconds;
   return real;
+}
+
+double Clock::lost(double suspended) {
+  const double asleep = suspended - suspended_.value_or(suspended);
+  suspended_ = suspended;
+  if (asleep <= kMostBehind) return lost_;
+  let_go_++;
+  return lost_ + asleep;
 }
 
 bool Clock::take_late() { return std::exchange(late_, false); }

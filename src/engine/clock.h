@@ -3,6 +3,7 @@
 
 #include <chrono>
 #include <cstdint>
+#include <optional>
 
 namespace limber {
 
@@ -26,6 +27,9 @@ class Clock {
   bool take_late();
   /// How often time was let go.
   std::uint64_t let_go() const { return let_go_; }
+  /// Real seconds that the last tick() let go; `suspended`: the seconds so far in which the system was suspended, which
+  /// steady_clock leaves out.
+  double lost(double suspended);
 
  private:
   double close_window(Time now, double tick_seconds);
@@ -36,6 +40,8 @@ class Clock {
   double reached_ = 1;
   double late_seconds_ = 0;
   std::uint64_t let_go_ = 0;
+  double lost_ = 0;
+  std::optional<double> suspended_;
   bool started_ = false;
   bool late_ = false;
   bool said_ = false;

@@ -109,6 +109,7 @@ void Engine::begin_show() {
 }
 
 bool Engine::reset() {
+  stall_excused_ = true;
   const TakenRun run = begin_run(TakeRun::Kind::reset);
   // a scene that fails now leaves the show as it is
   auto fresh = new_stage();
@@ -227,12 +228,27 @@ void Engine::pace() {
   World& world = stage_->world;
   const double speed = stage_->store.values(world.id(), speed_row)[0];
   clock_.tick(Clock::Time::clock::now(), world.timestep(), speed);
+  count_stall();
   if (clock_.take_late() && !stage_->transport.paused()) {
     log_warning(
         "time runs at {:.2f} × real time instead of {}: this machine can't keep up; fewer substeps or "
         "solver_iterations would help",
         clock_.speed_reached(), speed);
   }
+}
+
+// a machine that is too slow all the time loses it in small pieces, which is said otherwise
+void Engine::count_stall() {
+  constexpr double kWorthSaying = 0.5;  // s
+  const double lost = clock_.lost(system::suspended_seconds());
+  if (std::exchange(stall_excused_, false) || stage_->transport.paused()) return;
+  lost_time_ += lost;
+  if (lost < kWorthSaying || std::exchange(stall_said_, true)) return;
+  log_warning(
+      "the show stood still for {:.1f} s: the program was stopped, or the machine was suspended or busy. This is not "
+      "made "
+      "up, and is said once; /transport/lost_time counts on",
+      lost);
 }
 
 bool Engine::finished() const {

@@ -238,6 +238,7 @@ class Engine : private ScriptHost {
   void tell_health();
   bool wait_for_tick();
   void pace();
+  void count_stall();
   bool finished() const;
   void push_out(Outgoing out);
 
@@ -277,6 +278,9 @@ class Engine : private ScriptHost {
   std::uint64_t given_version_ = 0;           // of the store, when values were given last
   std::string given_scene_;                   // the scene then
   Clock clock_;
+  double lost_time_ = 0;  // s, by stalls
+  bool stall_said_ = false;
+  bool stall_excused_ = true;  // the loop was away for a reset or a rewind, which somebody has asked for
   PhaseTimes times_;
 
   struct Question {

@@ -20,12 +20,14 @@ void Engine::end_pass(bool running) {
 
 void Engine::tell_transport() {
   const double rewindable = history_.empty() ? 0 : stage_->world.time() - history_.oldest_time();
-  stage_->transport.tell(clock_.speed_reached(), rewindable, static_cast<double>(history_.bytes()) / (1u << 20u));
+  stage_->transport.tell(clock_.speed_reached(), rewindable, static_cast<double>(history_.bytes()) / (1u << 20u),
+                         lost_time_);
 }
 
 // Everything is as it was then; what of this tick was done before goes with the rest, what comes after it is done
 // there.
 Outcome Engine::go_back(const Transport::Back& back, const Origin& origin) {
+  stall_excused_ = true;
   World& world = stage_->world;
   const std::uint64_t tick = world.tick();
   const double time = world.time();

@@ -35,6 +35,9 @@ const Table& Transport::table() {
                               "Simulated seconds per real second, over the last half second."))),
           live(readout(number("rewindable", "s", 0, 0, kUnbounded, "How far back a rewind can go."))),
           live(readout(number("history_memory", "", 0, 0, kUnbounded, "Megabytes that this takes."))),
+          live(readout(number("lost_time", "s", 0, 0, kUnbounded,
+                              "Real time in which the show stood still: the program was stopped, or the machine was "
+                              "suspended or busy. It is not made up."))),
           say<&Transport::say_health>(
               text("health", "What was dropped, reduced, disabled or lost, and since when; empty: all is well.")),
       });
@@ -57,12 +60,13 @@ bool Transport::take_step() {
   return true;
 }
 
-void Transport::tell(double speed_reached, double rewindable, double history_memory) {
+void Transport::tell(double speed_reached, double rewindable, double history_memory, double lost_time) {
   static const Row& first = table().at("speed_reached");
   double* const out = world_.store().tell(id_, first);  // the readouts stand in a row
   out[0] = speed_reached;
   out[1] = rewindable;
   out[2] = history_memory;
+  out[3] = lost_time;
 }
 
 std::string_view Transport::say_health() const {

@@ -35,8 +35,9 @@ class Transport {
   std::optional<Back> take_back() { return std::exchange(back_, std::nullopt); }
   /// Time stands still from now on.
   void stand_still();
-  /// Tells `speed_reached`, the seconds that can be rewound, and the megabytes that they take.
-  void tell(double speed_reached, double rewindable, double history_memory);
+  /// Tells `speed_reached`, the seconds that can be rewound, the megabytes that they take, and the seconds that stalls
+  /// have cost.
+  void tell(double speed_reached, double rewindable, double history_memory, double lost_time);
 
  private:
   Result<void> act_play(std::span<const double> args);

@@ -68,6 +68,23 @@ TEST(Clock, ALongStallIsLetGo) {
   EXPECT_EQ(play(clock, now, 12, 0), 63) << "with the one above 64 in a second";
 }
 
+TEST(Clock, CountsWhatAStallCosts) {
+  Clock clock;
+  double now = 0;
+  clock.restart(at(now));
+  play(clock, now, 1, 0);
+  EXPECT_EQ(clock.lost(100), 0) << "the system was suspended before";
+  now = 4;
+  clock.tick(at(now), kTick, 1);
+  EXPECT_EQ(clock.lost(100), 3) << "the tick was due at 1 s";
+  play(clock, now, 5, 0);
+  EXPECT_EQ(clock.lost(100), 0) << "counted once";
+  play(clock, now, 6, 0);
+  EXPECT_EQ(clock.lost(130), 30) << "steady_clock stood still meanwhile";
+  EXPECT_EQ(clock.lost(130), 0);
+  EXPECT_EQ(clock.let_go(), 2u);
+}
+
 TEST(Clock, CatchesUpAQuarterOfASecondAtMost) {
   for (const double stall : {0.05, 0.1, 0.24, 0.26, 0.5, 3.0}) {
     Clock clock;

@@ -175,6 +175,7 @@ TEST(Health, CountsBodiesOutOfControl) {
 
 TEST(Health, CountsLinesThatTheLogLeftOut) {
   Show show;
+  log_to_stderr(true);  // other tests silence it
   log_forget_sources();
   for (int i = 0; i < 14; i++) log_warning("this warning repeats itself for a test of health");
   EXPECT_GE(losses(show)["log"], 4) << "ten of one source are written at most";

@@ -17,6 +17,9 @@ double thread_seconds();
 /// Time since 1970 as file systems report it, ns.
 std::int64_t file_clock_nanoseconds();
 
+/// Seconds in which the system was suspended since its start; 0 where it does not tell.
+double suspended_seconds();
+
 /// The time of day here, for log lines: "2026-03-09 21:03:12.345+0100".
 std::string local_time_text();
 

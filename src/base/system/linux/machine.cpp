@@ -1,8 +1,10 @@
 // The heap as glibc counts it, and the kernel's description of the processor.
 #include <malloc.h>
 
+#include <ctime>
 #include <fstream>
 
+#include "base/system/clock.h"
 #include "base/system/process.h"
 
 namespace limber::system {
@@ -21,6 +23,14 @@ std::string processor_name() {
 double heap_bytes() {
   const struct mallinfo2 info = mallinfo2();
   return static_cast<double>(info.uordblks) + static_cast<double>(info.hblkhd);
+}
+
+double suspended_seconds() {
+  timespec all{};
+  timespec awake{};
+  clock_gettime(CLOCK_MONOTONIC, &awake);
+  clock_gettime(CLOCK_BOOTTIME, &all);
+  return static_cast<double>(all.tv_sec - awake.tv_sec) + 1e-9 * static_cast<double>(all.tv_nsec - awake.tv_nsec);
 }
 
 }  // namespace limber::system

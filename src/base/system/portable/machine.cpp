@@ -1,4 +1,5 @@
 // POSIX counts no heap and names no processor.
+#include "base/system/clock.h"
 #include "base/system/process.h"
 
 namespace limber::system {
@@ -8,5 +9,7 @@ bool is_portable() { return true; }
 std::string processor_name() { return {}; }
 
 double heap_bytes() { return 0; }
+
+double suspended_seconds() { return 0; }
 
 }  // namespace limber::system
