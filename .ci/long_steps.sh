@@ -72,5 +72,21 @@ long_soak() { tests_at_length 'Soak.*'; }
 long_crash() { tests_at_length 'LongCrash.*'; }
 # --long takes: takes of ten wild minutes, and of many seeds
 long_takes() { tests_at_length 'LongTake.*'; }
+# --long lua_difference: a million random Lua programs, compiled against interpreted (LIMBER_LUA_PROGRAMS)
+# What is done is noted with the commit, so that an interrupted run goes on from there.
+long_lua_difference() {
+  local note=build/check/long/lua_difference.seed commit first=1 seed programs=${LIMBER_LUA_PROGRAMS:-1000000}
+  commit=$(clean_commit) || commit=none
+  [ "$commit" != none ] && [ "$(cat "$note.commit" 2>/dev/null)" = "$commit" ] && first=$(cat "$note" 2>/dev/null || echo 1)
+  printf '%s\n' "$commit" >"$note.commit"
+  seed=${first:-1}
+  [ "$seed" -gt "$programs" ] && seed=1
+  say "lua_difference: programs $seed to $programs"
+  configure release build -DLIMBER_TESTS=ON -DLIMBER_BENCHMARKS=ON
+  export LIMBER_LUA_SEED=$seed LIMBER_LUA_PROGRAMS=$((programs - seed + 1)) LIMBER_LUA_PROGRESS=$note
+  build build test_script && test_seconds=3600 test_only='LuaDifference.*' run_tests build script
+  unset LIMBER_LUA_SEED LIMBER_LUA_PROGRAMS LIMBER_LUA_PROGRESS
+  rm -f "$note.commit"
+}
 # --long math: the math functions against MPFR, ten million arguments of each and every float
 long_math() { tests_at_length 'LongMath*'; }

@@ -52,6 +52,17 @@ bool compiles_like_interpreter() {
 #endif
 }
 
+// `rounds` of a loop, calls of a function, and exits of compiled code
+void compile_after(lua_State* L, int rounds) {
+  lua_getfield(L, LUA_REGISTRYINDEX, "_LOADED");
+  lua_getfield(L, -1, "jit.opt");
+  lua_getfield(L, -1, "start");
+  lua_pushfstring(L, "hotloop=%d", rounds);
+  lua_pushfstring(L, "hotexit=%d", rounds);
+  lua_call(L, 2, 0);
+  lua_pop(L, 2);
+}
+
 }  // namespace
 
 Guard::Guard(lua_State* state, ScriptContext& context, const ScriptLimits& limits)
@@ -97,7 +108,10 @@ bool Guard::arm() {
   luaJIT_profile_start(state_, "li1000000000", no_profile, nullptr);
   // only its handler is wanted, not its clock
   leave_compiled_code = system::take_profile_handler();
-  if (limits_.compiled && compiles_like_interpreter()) luaJIT_setmode(state_, 0, LUAJIT_MODE_ENGINE | LUAJIT_MODE_ON);
+  if (limits_.compiled && compiles_like_interpreter()) {
+    luaJIT_setmode(state_, 0, LUAJIT_MODE_ENGINE | LUAJIT_MODE_ON);
+    if (limits_.hot_loop > 0) compile_after(state_, limits_.hot_loop);
+  }
   live_ = true;
   return true;
 }

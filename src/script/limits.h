@@ -23,6 +23,7 @@ struct ScriptLimits {
   double again_ms = 1000 * kBudgetScale;        ///< CPU time of a call that a rewind makes again.
   std::size_t memory = std::size_t{64} << 20u;  ///< Bytes that all scripts together may hold.
   bool compiled = true;  ///< Whether LuaJIT compiles what runs often; interpreted it comes to the same results.
+  int hot_loop = 0;      ///< Rounds after which a loop is compiled, for tests; 0: LuaJIT's own number.
   bool disable_failed_handlers = true;  ///< False: takes of earlier versions, in which they were called again.
   std::size_t things = 500'000;  ///< Nodes that a scene may have: about 100 000 parts with their joints and motors.
 };

@@ -108,6 +108,24 @@ std::optional<int> nil_loop(std::string_view text) {
   return std::nullopt;
 }
 
+// 1LL, 0x1ULL and 2i are numbers of LuaJIT's foreign function interface, which scripts don't see otherwise
+bool is_foreign_number(std::string_view token) {
+  if (token[0] < '0' || token[0] > '9') return false;
+  const auto ends_with = [&](std::string_view suffix) {
+    return token.size() > suffix.size() &&
+           std::equal(suffix.rbegin(), suffix.rend(), token.rbegin(), [](char a, char b) { return a == (b | 0x20); });
+  };
+  return ends_with("ll") || ends_with("i");
+}
+
+std::optional<int> foreign_number(std::string_view text) {
+  Tokens tokens(text);
+  for (std::string_view token = tokens.next(); !token.empty(); token = tokens.next()) {
+    if (is_foreign_number(token)) return tokens.line();
+  }
+  return std::nullopt;
+}
+
 }  // namespace
 
 std::optional<TextFault> text_fault(std::string_view text) {
@@ -115,6 +133,8 @@ std::optional<TextFault> text_fault(std::string_view text) {
     return TextFault{1, fmt::format("a text may hold {} times break, goto, elseif; part it", kMostJumps)};
   if (const std::optional<int> line = nil_loop(text))
     return TextFault{*line, "the values of a loop can't begin with nil; put them into a local variable before it"};
+  if (const std::optional<int> line = foreign_number(text))
+    return TextFault{*line, "numbers can't end in LL, ULL or i; a number of Lua holds integers up to 2^53 exactly"};
   return std::nullopt;
 }
 

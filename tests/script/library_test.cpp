@@ -47,6 +47,24 @@ const std::vector<double> kValues = {0, -0.0, 1, -1, 0.5, -2, kInf, -kInf, kNan}
 double least(double x, double y) { return y < x ? y : x; }
 double most(double x, double y) { return y > x ? y : x; }
 
+TEST(Library, CeilKeepsMinusZero) {
+  std::vector<std::string> expected(kValues.size());
+  std::transform(kValues.begin(), kValues.end(), expected.begin(), [](double x) { return shown(std::ceil(x)); });
+  EXPECT_EQ(lines_of(std::string(kShowNumber) + R"(
+sim:on_step(function()
+  for round = 1, 100 do
+    for _, x in ipairs(values) do
+      local text = shown(math.ceil(x))
+      if round == 100 then print(text) end
+    end
+  end
+end)
+)"),
+            expected);
+  EXPECT_EQ(value_of("math.ceil('1.5')"), "2");
+  EXPECT_EQ(error_of("math.ceil({})"), "scripts/scene.lua:1: math.ceil takes a number, not a table");
+}
+
 TEST(Library, MinAndMaxKeepNaNAndMinusZero) {
   std::vector<std::string> expected;
   for (const double x : kValues) {

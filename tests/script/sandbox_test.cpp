@@ -290,5 +290,34 @@ TEST(Sandbox, PrintAndWarn) {
   EXPECT_EQ(stage.logged(), Lines{"careful\t3"});
 }
 
+TEST(Sandbox, TablesAreNeverWeak) {
+  Stage stage;
+  EXPECT_EQ(stage.play("local weak = {}\n"
+                       "for i = 1, 3 do\n"
+                       "  setmetatable(weak, { __mode = 'v' })\n"
+                       "end\n"
+                       "local meta = getmetatable(weak)\n"
+                       "rawset(meta, '__mode', 'k')\n"
+                       "for i = 1, 100 do weak[i] = {} end\n"
+                       "print(meta.__mode)\n"
+                       "local n = 0\n"
+                       "sim:on_step(function()\n"
+                       "  local garbage = {}\n"
+                       "  for i = 1, 20000 do garbage[i] = { i } end\n"
+                       "  n = 0\n"
+                       "  for _ in pairs(weak) do n = n + 1 end\n"
+                       "end)\n"
+                       "sim:after(0.5, function() print(n) end)\n",
+                       40),
+            "");
+  EXPECT_EQ(stage.host.printed, (std::vector<std::string>{"nil", "100"}));
+  const std::string warning =
+      "__mode is ignored: entries of weak tables would go at another tick in each run. Remove them by = nil";
+  const std::vector<std::string> logged = stage.logged();
+  ASSERT_EQ(logged.size(), 2U);
+  EXPECT_EQ(logged[0], "scripts/scene.lua:3: " + warning);
+  EXPECT_EQ(logged[1], "scripts/scene.lua:6: " + warning);
+}
+
 }  // namespace
 }  // namespace limber

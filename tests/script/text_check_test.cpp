@@ -21,6 +21,14 @@ TEST(TextCheck, ALoopOverNilIsFound) {
   EXPECT_EQ(line_of("local s = 'it\\'s' for a in (nil or pairs)(t) do end"), 1);
 }
 
+TEST(TextCheck, NumbersOfTheForeignFunctionInterfaceAreFound) {
+  EXPECT_EQ(line_of("local a = 1\nlocal b = 1LL"), 2);
+  for (const char* text : {"x = 1ll", "x = 0xFFULL", "x = 2ULL + 1", "x = 3i", "x = 0.5i", "x = 7I"})
+    EXPECT_EQ(line_of(text), 1) << text;
+  for (const char* text : {"x = 0xFL1", "x1LL = 1", "x = '1LL'", "-- 1LL", "x = 1e5", "x = i", "x = 0x1f", "x = LL"})
+    EXPECT_EQ(line_of(text), 0) << text;
+}
+
 TEST(TextCheck, OtherTextsAreNot) {
   for (const char* text :
        {"", "local x = nil", "for i = nil, 3 do end", "for a in pairs(nil) do end", "for a in f, nil do end",

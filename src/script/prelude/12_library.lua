@@ -1,6 +1,8 @@
 -- Replaces functions of Lua's libraries that some release of LuaJIT compiles to results other than the interpreter's.
 -- The interpreter runs a loop at first and compiled code runs it later, so that a script would depend on that moment.
 --   math.min, math.max   NaN and -0                      2.1.0-beta3 (Debian 12)
+--   math.ceil            -0                              2.1.0-beta3 of 2022 (Debian 12)
+--   next in a loop       ends too early                  2.1.0-beta3 of 2022 (Debian 12)
 --   string.sub           positions outside of the text   all; 2.1.1737090214 (Debian 13) also crashes
 --   bit.*                fractions and large numbers     arm64
 local P = ...
@@ -28,6 +30,23 @@ local function replace_extreme(name, choose)
 end
 replace_extreme("min", api.min)
 replace_extreme("max", api.max)
+
+-- -0 between -1 and 0, as the C library
+local floor = math.floor
+function math.ceil(x)
+  if type(x) ~= "number" then
+    local number = tonumber(x)
+    if not number then fail("math.ceil takes a number, not %s", describe(x)) end
+    x = number
+  end
+  return -floor(-x)
+end
+
+-- A loop over LuaJIT's own `next` has instructions of its own, which end it too early once its compilation has failed. It
+-- has not over another function; scripts see neither.
+local native_next = next
+function next(t, key) return native_next(t, key) end
+function pairs(t) return next, t end
 
 -- first and last position of a part of a text of n bytes, between 1 and n unless the part is empty
 local function bounds(n, first, last)

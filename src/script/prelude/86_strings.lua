@@ -192,15 +192,20 @@ local function check_format(text, ...)
     if type(value) == "string" then want_short(value, "format") end
   end
 end
+-- LuaJIT 2.1.0-beta3 crashes where it compiles a format of very many parts.
+local function format_long(...) return native.format(...) end
+jit.off(format_long)
+local kLongFormat = 500
 function S.format(text, ...)
   text = want_short(text, "format")
   check_format(text, ...)
-  if plain(...) then return native.format(text, ...) end
+  local native_format = #text > kLongFormat and format_long or native.format
+  if plain(...) then return native_format(text, ...) end
   local values, n = { ... }, select("#", ...)
   for i = 1, n do
     if not plain(values[i]) then values[i] = show(values[i]) end
   end
-  return native.format(text, unpack(values, 1, n))
+  return native_format(text, unpack(values, 1, n))
 end
 
 function S.rep(text, count, separator)

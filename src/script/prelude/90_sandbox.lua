@@ -15,7 +15,7 @@ local function copy(lib, names)
   for name in names:gmatch("%S+") do t[name] = lib[name] end
   return t
 end
-local kPlain = "assert error select type unpack rawequal rawget getmetatable setmetatable pcall"
+local kPlain = "assert error select type unpack rawequal rawget getmetatable pcall"
 local kMath = "abs acos asin atan atan2 ceil cos cosh deg exp floor fmod frexp huge ldexp log log10 max min modf " ..
   "pi pow rad sin sinh sqrt tan tanh"
 local kBit = "arshift band bnot bor bswap bxor lshift rol ror rshift tobit tohex"
@@ -30,11 +30,11 @@ end
 
 local function add_functions(env)
   for name in kPlain:gmatch("%S+") do env[name] = _G[name] end
-  env.ipairs, env.pairs, env.tostring = P.ipairs, P.pairs, P.show
+  env.ipairs, env.pairs, env.tostring, env.setmetatable = P.ipairs, P.pairs, P.show, P.setmetatable
   -- what all scripts share is not to be changed past its metatable
   function env.rawset(t, key, value)
     if t == P.osc or t == P.params or t == P.presets then fail("rawset: %s can't be changed", P.show(t)) end
-    return rawset(t, key, value)
+    return P.rawset(t, key, value)
   end
   -- a long text is walked in C
   function env.tonumber(value, base)

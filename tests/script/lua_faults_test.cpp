@@ -1,0 +1,118 @@
+// Known faults of LuaJIT: each file of luajit_faults/ shows one in a plain Lua state, and none in a scene.
+// docs/luajit.md has a row for each, with the releases that have it and the protection.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <map>
+#include <optional>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include <fmt/format.h>
+#include <lua.hpp>
+
+#include "base/sanitized.h"
+#include "base/text.h"
+#include "lua_runs.h"
+#include "stage.h"
+
+namespace limber {
+namespace {
+
+using script_test::LuaRun;
+using script_test::run_plainly;
+using script_test::run_texts;
+
+std::string content(const std::filesystem::path& path) {
+  std::ifstream in(path, std::ios::binary);
+  return {std::istreambuf_iterator<char>(in), {}};
+}
+
+std::map<std::string, std::string> fault_texts() {
+  std::map<std::string, std::string> texts;
+  for (const auto& entry : std::filesystem::directory_iterator(LIMBER_SOURCE_DIR "/tests/script/luajit_faults"))
+    texts[entry.path().stem().string()] = content(entry.path());
+  return texts;
+}
+
+// The rows of the table: cells by the name of the file, which is in the first one.
+std::map<std::string, std::vector<std::string>> rows() {
+  std::map<std::string, std::vector<std::string>> rows;
+  std::istringstream lines(content(LIMBER_SOURCE_DIR "/docs/luajit.md"));
+  for (std::string line; std::getline(lines, line);) {
+    if (!line.starts_with("| `")) continue;
+    std::vector<std::string> cells;
+    for (const std::string_view cell : split(line, '|'))
+      cells.emplace_back(cell.size() < 2 ? cell : cell.substr(1, cell.size() - 2));
+    const std::string name = cells.at(1).substr(1, cells[1].size() - 2);
+    rows[name] = {cells.begin() + 2, cells.end()};
+  }
+  return rows;
+}
+
+// Cells of a row, behind the name: the fault, the releases, the protection.
+constexpr std::size_t kDebian12 = 1, kFork = 2, kDebian13 = 3, kProtection = 4;
+
+bool is_protected(const std::vector<std::string>& cells) { return !cells.at(kProtection).starts_with("none"); }
+
+// The column of the LuaJIT that this program runs with.
+std::optional<std::size_t> installed() {
+  if (std::string_view(LUAJIT_VERSION) == "LuaJIT 2.1.1737090214") return kDebian13;
+  if (std::string_view(LUAJIT_VERSION) != "LuaJIT 2.1.0-beta3") return std::nullopt;
+  return run_plainly("(...)(table.nkeys ~= nil)", {}).starts_with("true") ? kFork : kDebian12;
+}
+
+TEST(LuaFaults, TheTableHasARowForEach) {
+  const auto table = rows();
+  const auto texts = fault_texts();
+  for (const auto& [name, text] : texts) EXPECT_TRUE(table.count(name) == 1) << name;
+  for (const auto& [name, cells] : table) {
+    EXPECT_TRUE(texts.count(name) == 1) << name;
+    ASSERT_GT(cells.size(), kProtection) << name;
+    for (const std::size_t cell : {kDebian12, kFork, kDebian13})
+      EXPECT_TRUE(cells[cell] == "wrong" || cells[cell] == "crash" || cells[cell] == "no") << name;
+  }
+}
+
+TEST(LuaFaults, ScenesHaveNone) {
+  const auto table = rows();
+  std::vector<std::string> names, texts;
+  for (const auto& [name, text] : fault_texts()) {
+    if (!is_protected(table.at(name))) continue;
+    names.push_back(name);
+    texts.push_back(text);
+  }
+  const auto expected = run_texts(texts, {false, 0});
+  ASSERT_EQ(expected.size(), texts.size());
+  for (const int hot_loop : {0, 1}) {
+    for (std::size_t i = 0; i < texts.size(); i++) {
+      const auto result = run_texts({texts[i]}, {true, hot_loop});
+      EXPECT_EQ(result.at(0), expected[i]) << names[i] << ", hot_loop " << hot_loop;
+    }
+  }
+}
+
+// What an installed LuaJIT does without protection. Other releases, and processors other than x64, have other faults; a
+// sanitizer reports a crash by itself.
+TEST(LuaFaults, TheInstalledVersionHasThoseOfItsColumn) {
+  const std::optional<std::size_t> column = installed();
+  if (kSanitized || !column || !run_plainly("(...)(jit.arch)", {}).starts_with("x64")) return;
+  const auto table = rows();
+  for (const auto& [name, text] : fault_texts()) {
+    const std::string expected = run_plainly(text, {false, 0});
+    std::string found = expected.starts_with("crashed") ? "crash" : "no";
+    for (const int hot_loop : {0, 1}) {
+      const std::string result = run_plainly(text, {true, hot_loop});
+      if (result == expected) continue;
+      found = result.starts_with("crashed") ? "crash" : found == "crash" ? "crash" : "wrong";
+    }
+    EXPECT_EQ(found, table.at(name).at(*column)) << name;
+  }
+}
+
+}  // namespace
+}  // namespace limber

@@ -1,0 +1,19 @@
+-- A key of a new table that is set twice has its first value, where compiled code goes on from other compiled code.
+local out = ...
+local side
+local function make(number)
+  local t = {}
+  t.key = false
+  t.key = number == number
+  if side then end
+  return t.key
+end
+local function call()  -- the closure keeps it from being compiled itself
+  local _ = function() end
+  local result = make(0)
+  return result
+end
+for _ = 1, 200 do call() end
+side = true
+for _ = 1, 200 do call() end
+out(call())

@@ -1,0 +1,3 @@
+-- The parser reads an instruction that it has not written.
+local out = ...
+out(pcall(load or loadstring, "local _\nfor _ in (nil):foo() do end"))
