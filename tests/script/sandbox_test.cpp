@@ -319,5 +319,27 @@ TEST(Sandbox, TablesAreNeverWeak) {
   EXPECT_EQ(logged[1], "scripts/scene.lua:6: " + warning);
 }
 
+TEST(Sandbox, LoopsThatAreNotCompiledAreReportedOnce) {
+  Stage stage;
+  EXPECT_EQ(stage.play("local sum = 0\n"
+                       "sim:on_step(function()\n"
+                       "  for i = 1, 2000 do sum = sum + i end\n"
+                       "end)\n"
+                       "sim:on_step(function()\n"
+                       "  for i = 1, 2000 do\n"
+                       "    local f = function() return sum end\n"
+                       "    sum = sum + f()\n"
+                       "  end\n"
+                       "end)\n",
+                       60),
+            "");
+  const std::vector<std::string> logged = stage.logged();
+  ASSERT_EQ(logged.size(), 1U);
+  EXPECT_EQ(
+      logged[0],
+      "scripts/scene.lua:6: LuaJIT doesn't compile this loop, so that it runs many times slower; make its functions "
+      "outside of it");
+}
+
 }  // namespace
 }  // namespace limber

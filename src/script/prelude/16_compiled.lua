@@ -98,6 +98,13 @@ local function constants(proto, f)
   end
 end
 
+local interpreted = setmetatable({}, { __mode = "k" })
+local function interpret(proto)
+  jit.off(proto)
+  interpreted[proto] = true
+end
+function P.is_interpreted(proto) return interpreted[proto] ~= nil end
+
 -- Metamethods that make the compilation of a group of functions wrong: until a script has one, the group is compiled.
 --   __concat     in functions with `..`: with `...` or pcall as the metamethod it crashes, and an error is lost
 --   __newindex   in functions that set elements to nil, on Debian 12: it isn't called for the same table by another name
@@ -105,13 +112,13 @@ local groups = { __concat = {}, __newindex = {} }
 for _, group in pairs(groups) do group.waiting = setmetatable({}, { __mode = "k" }) end
 local function join_group(name, proto)
   local group = groups[name]
-  if group.interpreted then jit.off(proto) else group.waiting[proto] = true end
+  if group.interpreted then interpret(proto) else group.waiting[proto] = true end
 end
 local function interpret_group(name)
   local group = groups[name]
   if not group or group.interpreted then return end
   group.interpreted = true
-  for proto in pairs(group.waiting) do jit.off(proto) end
+  for proto in pairs(group.waiting) do interpret(proto) end
   group.waiting = nil
 end
 
@@ -127,7 +134,7 @@ end
 
 local function inspect(proto, is_chunk)
   local found = scan(proto)
-  if kOld and (found.misread or found.twice or found.outgrown) then jit.off(proto) end
+  if kOld and (found.misread or found.twice or found.outgrown) then interpret(proto) end
   if found.concat then join_group("__concat", proto) end
   if kOld and found.clears then join_group("__newindex", proto) end
   local uses_tables = false
@@ -136,10 +143,11 @@ local function inspect(proto, is_chunk)
     interpret_group(constant)
     if constant == "table" then uses_tables = true end
   end)
+  if not is_chunk then P.watch(proto) end
   if not kOld then return end
   if is_chunk then
     -- it runs once, and interpreted after a save
-    if found.loop and (found.kept or found.length or uses_tables) then jit.off(proto) end
+    if found.loop and (found.kept or found.length or uses_tables) then interpret(proto) end
     return
   end
   has_length, has_element = has_length or found.length or uses_tables, has_element or found.element or uses_tables

@@ -287,6 +287,7 @@ function P.entry.tick(dt)
   run_timers()
   run_contacts()
   call_all(steps, dt)
+  P.report_fallbacks()
 end
 
 -- of an earlier run: whether a timer is due; then the timers, and how many are left
