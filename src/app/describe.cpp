@@ -70,6 +70,7 @@ std::vector<Irregular> described_messages() {
   const auto list = Dispatch::irregulars();
   std::vector<Irregular> all(list.begin(), list.end());
   all.push_back({"/ping", "", "Answers at once with /pong, the tick and the time."});
+  all.push_back({"/token", "token", "Proves that the sender gets what is sent to its address; asked for by /token."});
   all.push_back({"/subscribe", "path|stream [rate]", "Tells the sender of changes, or streams to it, for 30 s."});
   all.push_back({"/unsubscribe", "[path|stream]", "Ends that, or all that the sender subscribed to."});
   return all;

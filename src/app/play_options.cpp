@@ -41,7 +41,9 @@ CLI::Validator plain_count() {
 // who plays it and listens to it
 void add_network(CLI::App& play, PlayOptions& o) {
   play.add_option("--osc-in", o.osc_in, "where OSC comes in; default 127.0.0.1:9003")->type_name("[ADDR:]PORT|off");
-  play.add_option("--osc-allow", o.osc_allow, "only these senders, such as 192.168.1.0/24")->type_name("CIDR,...");
+  play.add_option("--osc-allow", o.osc_allow, "only these senders, such as 192.168.1.0/24; may be repeated")
+      ->type_name("ADDRESS[/BITS],...")
+      ->join(',');
   play.add_option("--osc-out", o.osc_out,
                   "where joint poses stream to; default 127.0.0.1:9005. Options behind it: rate=60, "
                   "bundle=off|1472|8192|65504, "

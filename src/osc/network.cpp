@@ -2,12 +2,15 @@
 #include "osc/network.h"
 
 #include <algorithm>
+#include <array>
+#include <random>
 #include <utility>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
 #include "base/log.h"
+#include "base/system/interfaces.h"
 #include "base/system/thread.h"
 #include "base/system/wait.h"
 #include "base/text.h"
@@ -19,6 +22,15 @@ namespace {
 constexpr std::int64_t kListenPause = 1'000'000'000;  // ns between two tries to open a port that is taken
 constexpr std::int64_t kNamePause = 5'000'000'000;    // ns between two look-ups of a name that is not known yet
 constexpr std::chrono::seconds kFirstLookUp{2};       // that the start waits for
+constexpr std::size_t kOutboxSlice = 256;             // messages that go out before input gets its turn
+constexpr std::size_t kAll = ~std::size_t{0};
+
+// from the system, so that nobody can compute the tokens
+std::array<std::uint64_t, 2> secret() {
+  std::random_device device;
+  const auto word = [&device] { return std::uint64_t{device()} << 32 | device(); };
+  return {word(), word()};
+}
 
 }  // namespace
 
@@ -31,14 +43,27 @@ Network::Network(EngineLink& link, OscOptions options, const LiveOffsets& offset
           link, options_.allow,
           {[this](const Outgoing& out) { out.origin.hand == Hand::query ? link_.push_out(out) : sender_.send(out); },
            [this](const Origin& to) { pong(to); },
-           [this](const Message& message, const Origin& origin) { return subscribers_.take(message, origin); },
-           [this](const Origin& origin) { return subscribers_.follows(origin); }},
+           [this](const Message& message, const Origin& origin) { return subscribe(message, origin); },
+           [this](const Origin& origin) { return subscribers_.follows(origin); },
+           [this](const Endpoint& from, std::size_t bytes) { note_received(from, bytes); },
+           [this](const Message& message, const Origin& origin) { take_token(message, origin); },
+           [this](const Origin& origin) {
+             if (origin.hand == Hand::osc) sender_.note_echo({origin.ip, origin.port});
+           }},
           clock_),
       sender_(
           link.counters, link.traffic, [this](const Endpoint& sender) { return receiver_.socket_of(sender); }, clock_),
       names_(std::move(look_up), [wake = wake_] { wake->notify(); }),
-      streams_(link, offsets, clock_),
-      subscribers_(link, clock_, [this](const Outgoing& out) { sender_.send(out); }) {
+      streams_(link, offsets, clock_, serves()),
+      subscribers_(link, clock_,
+                   [this](const Outgoing& out) {
+                     if (out.to == Outgoing::To::sender) return sender_.send_value(out);
+                     sender_.send(out);
+                     return true;
+                   }),
+      sources_(options_.allow, options_.connected ? options_.connected : connected_subnets, secret()) {
+  sender_.set_gates([this](const Endpoint& to, std::size_t bytes, std::size_t) { return may_send(to, bytes); },
+                    serves());
   link_.wake_network = [wake = wake_] { wake->notify(); };
 }
 
@@ -69,7 +94,7 @@ void Network::stop() {
     thread_.join();
   }
   // what the engine said before it stopped still goes out
-  if (sender_.socket().is_open()) send_outbox();
+  if (sender_.socket().is_open()) send_outbox(kAll);
   receiver_.close();
   sender_.close();
   plan_ = {};
@@ -102,9 +127,11 @@ void Network::run() {
     look_up_again();
     subscribers_.work();
     aim_at_subscribers();
-    send_outbox();
+    tell_health();
+    send_outbox(kOutboxSlice);
     streams_.send_due(sender_.socket());
     refusals_.take(sender_.socket(), link_.counters, clock_.steady());
+    tell_health();
   }
 }
 
@@ -117,7 +144,9 @@ void Network::wait_for_something() {
     if (at) *at = std::max<std::int64_t>(0, *at - clock_.steady());
     return at;
   };
-  for (const auto other : {receiver_.wait(), subscribers_.wait(), until(listen_at_), until(names_at_)}) {
+  std::optional<std::int64_t> unsent;
+  if (next_outgoing_ < outgoing_.size()) unsent = 0;
+  for (const auto other : {receiver_.wait(), subscribers_.wait(), until(listen_at_), until(names_at_), unsent}) {
     if (other && (!wait || *other < *wait)) wait = other;
   }
   std::optional<std::chrono::nanoseconds> limit;
@@ -134,6 +163,7 @@ std::vector<std::string> Network::apply(const OscPlan& plan) {
   if (receiver_.wants_more(plan.listen)) listen_at_ = clock_.steady() + kListenPause;
   plan_ = plan;
   said_.clear();
+  set_own();
   names_.forget();
   return faults;
 }
@@ -147,6 +177,10 @@ std::vector<std::string> Network::aim(std::chrono::milliseconds wait) {
     const std::optional<Result<Endpoint>> at =
         wait.count() > 0 ? names_.wait_for(wish.host, wish.port, wait) : names_.find(wish.host, wish.port);
     if (!at) continue;
+    if (*at && sender_.is_own(**at)) {
+      sender_.report_own(**at);
+      continue;
+    }
     if (*at) {
       targets_.push_back({wish, **at});
       continue;
@@ -208,6 +242,7 @@ void Network::listen_again() {
   if (receiver_.wants_more(plan_.listen)) listen_at_ = clock_.steady() + kListenPause;
   if (receiver_.descriptors() == descriptors_) return;
   descriptors_ = receiver_.descriptors();
+  set_own();
   renew_lines();
   for (const std::string& line : lines()) log_info("{}", line);
 }
@@ -248,9 +283,72 @@ void Network::pong(const Origin& to) {
   link_.push_out({Outgoing::To::sender, to, {"/pong", {Arg::of(static_cast<double>(tick)), Arg::of(time)}}});
 }
 
-void Network::send_outbox() {
-  link_.outbox.drain(outgoing_);
-  for (const Outgoing& out : outgoing_) sender_.send(out);
+void Network::send_outbox(std::size_t most) {
+  while (most > 0) {
+    if (next_outgoing_ == outgoing_.size()) {
+      next_outgoing_ = 0;
+      link_.outbox.drain(outgoing_);
+      if (outgoing_.empty()) return;
+    }
+    const std::size_t end = std::min(outgoing_.size(), next_outgoing_ + std::min(most, outgoing_.size()));
+    most -= end - next_outgoing_;
+    for (; next_outgoing_ < end; next_outgoing_++) sender_.send(outgoing_[next_outgoing_]);
+  }
+}
+
+void Network::set_own() {
+  std::vector<std::uint32_t> addresses;
+  for (const system::Subnet& subnet : system::connected_subnets()) addresses.push_back(subnet.ip);
+  sender_.set_own(receiver_.bound(), std::move(addresses));
+}
+
+SendGate Network::serves() {
+  return [this](const Endpoint& to, std::size_t bytes, std::size_t datagrams) {
+    return subscribers_.spend(to, bytes, datagrams) && may_send(to, bytes);
+  };
+}
+
+bool Network::may_send(const Endpoint& to, std::size_t bytes) {
+  if (sources_.allows(to.ip, bytes, clock_.steady())) return true;
+  if (const auto more = limited_.ask(clock_.steady())) {
+    log_warning(
+        "OSC out: {} is in another network and gets at most three bytes for each that it sends, until it returns "
+        "/token; --osc-allow {}/32 serves it in full{}",
+        endpoint_text(to), system::endpoint_text({to.ip, 0}), *more);
+  }
+  return false;
+}
+
+// before its messages are answered
+void Network::note_received(const Endpoint& from, std::size_t bytes) {
+  sources_.received(from.ip, bytes, clock_.steady());
+  challenge(from, false);
+}
+
+void Network::challenge(const Endpoint& end, bool wants_more) {
+  const std::optional<std::string> token = sources_.token(end.ip, wants_more, clock_.steady());
+  if (token) sender_.send({Outgoing::To::sender, {Hand::osc, end.ip, end.port}, {"/token", {Arg::of(*token)}}});
+}
+
+void Network::take_token(const Message& message, const Origin& origin) {
+  if (origin.hand != Hand::osc || message.args.size() != 1 || !message.args[0].is_text()) return;
+  if (sources_.accept(origin.ip, message.args[0].text, clock_.steady()))
+    log_info("OSC: {} has returned its token and is served in full", endpoint_text({origin.ip, origin.port}));
+}
+
+Result<void> Network::subscribe(const Message& message, const Origin& origin) {
+  const Endpoint end{origin.ip, origin.port};
+  if (origin.hand == Hand::osc && sender_.is_own(end)) {
+    sender_.report_own(end);
+    return {};
+  }
+  if (origin.hand == Hand::osc) challenge(end, true);
+  return subscribers_.take(message, origin);
+}
+
+void Network::tell_health() {
+  link_.health.set(HealthItem::limited, sources_.withheld());
+  link_.health.set(HealthItem::loops, sender_.loops());
 }
 
 }  // namespace limber

@@ -18,6 +18,7 @@
 #include "osc/receiver.h"
 #include "osc/refusals.h"
 #include "osc/sender.h"
+#include "osc/source_limit.h"
 #include "osc/streams.h"
 #include "osc/subscribers.h"
 
@@ -61,7 +62,15 @@ class Network {
   void aim_streams();
   void pong(const Origin& to);
   void take_packets();
-  void send_outbox();
+  void send_outbox(std::size_t most);
+  void set_own();
+  void note_received(const Endpoint& from, std::size_t bytes);
+  void take_token(const Message& message, const Origin& origin);
+  Result<void> subscribe(const Message& message, const Origin& origin);
+  SendGate serves();
+  bool may_send(const Endpoint& to, std::size_t bytes);
+  void challenge(const Endpoint& end, bool wants_more);
+  void tell_health();
 
   struct Packet {
     Origin origin;
@@ -87,6 +96,9 @@ class Network {
   std::vector<Target> targets_;
   std::vector<std::string> said_;  // faults of this plan's targets
   std::vector<Outgoing> outgoing_;
+  std::size_t next_outgoing_ = 0;  // the first that is not sent
+  SourceLimit sources_;
+  Seldom limited_;
   std::vector<int> descriptors_;
   std::optional<std::int64_t> listen_at_;  // when ports that could not be had are tried again, ns
   std::optional<std::int64_t> names_at_;   // when names that were not found are, ns

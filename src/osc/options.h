@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -29,6 +30,8 @@ struct OscOptions {
   std::optional<std::vector<StreamTarget>> out;  ///< `--osc-out`.
   std::vector<Cidr> allow;                       ///< `--osc-allow`; empty: everyone.
   bool optional = false;                         ///< `--osc-optional`: play on when a port can't be had.
+  /// The directly connected subnets, whose senders are served in full; nothing: the system's.
+  std::function<std::vector<Cidr>()> connected = {};
 };
 
 /// `[ADDR:]PORT` or `off`; several, separated by commas. Port 0 lets the system choose. [any]

@@ -117,6 +117,7 @@ void Receiver::receive(int fd) {
 
 void Receiver::take_from(Listening& socket, const char* data, std::size_t size, const Endpoint& from) {
   known_[slot_of(from) % kKnown] = {from, socket.socket.fd()};
+  answers_.received(from, size);
   const Scanned scanned = scan(data, size, {Hand::osc, from.ip, from.port});
   pushed_ = pushed_ || scanned.urgent;
   if (raw_.size() < kMostRaw && raw_bytes_ + size <= kMostRawBytes) {
@@ -138,6 +139,14 @@ struct UrgentAddresses {
   static void argument(char, const char*) {}
   static void end_message() {}
 };
+
+// an /error, or a message about one
+bool answers_error(const Message& message) {
+  constexpr std::string_view kError = "/error";
+  return same_address(message.address, kError) || std::ranges::any_of(message.args, [&](const Arg& arg) {
+           return arg.is_text() && arg.text.starts_with('/') && same_address(arg.text, kError);
+         });
+}
 
 }  // namespace
 
@@ -191,6 +200,11 @@ void Receiver::take(const char* data, std::size_t size, Origin origin, Scanned s
   const auto pings = std::erase_if(decoded->messages, [](const Message& m) { return m.address == "/ping"; });
   for (std::size_t i = 0; i < pings; i++) answers_.pong(origin);
   std::erase_if(decoded->messages, [&](const Message& m) {
+    if (m.address == "/token") {
+      answers_.token(m, origin);
+      return true;
+    }
+    if (answers_error(m)) answers_.echo(origin);
     if (!Subscribers::is_one(m)) return false;
     if (const Result<void> done = answers_.subscribe(m, origin); !done) refuse(origin, m.address, done.error());
     return true;

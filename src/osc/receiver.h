@@ -32,6 +32,12 @@ struct ReceiverAnswers {
     return Result<void>();
   };
   std::function<bool(const Origin&)> follows = [](const Origin&) { return false; };
+  /// A datagram has come by a socket.
+  std::function<void(const Endpoint&, std::size_t bytes)> received = [](const Endpoint&, std::size_t) {};
+  /// `/token` has come.
+  std::function<void(const Message&, const Origin&)> token = [](const Message&, const Origin&) {};
+  /// A message that may be the answer to an /error has come.
+  std::function<void(const Origin&)> echo = [](const Origin&) {};
 };
 
 /// [net], but for what says otherwise

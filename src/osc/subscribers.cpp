@@ -1,4 +1,5 @@
-// Values are told from images: the newest when it is due, however often it changed in between.
+// Values are told from images: the newest when it is due, however often it changed in between. A round serves one image
+// to all subscribers, in as many slices as that takes.
 #include "osc/subscribers.h"
 
 #include <algorithm>
@@ -39,8 +40,9 @@ std::string plain_stream(const std::string& what) {
 
 }  // namespace
 
-Subscribers::Subscribers(EngineLink& link, const NetClock& clock, std::function<void(const Outgoing&)> send)
-    : link_(link), clock_(clock), send_(std::move(send)) {}
+Subscribers::Subscribers(EngineLink& link, const NetClock& clock, std::function<bool(const Outgoing&)> send,
+                         SendLimits each, SendLimits all)
+    : link_(link), clock_(clock), send_(std::move(send)), budget_(each, all) {}
 
 Subscribers::Subscriber* Subscribers::find(const Origin& origin) const {
   const auto found = std::ranges::find_if(list_, [&](const auto& s) { return s->origin == origin; });
@@ -72,7 +74,9 @@ Result<void> Subscribers::subscribe(const Origin& origin, const std::string& wha
   Subscriber* who = find(origin);
   if (who == nullptr) {
     if (list_.size() >= kMost) return Error{fmt::format("{} have subscribed already; no more can", kMost)};
-    who = list_.emplace_back(std::make_unique<Subscriber>(Subscriber{origin, {}})).get();
+    who = list_.emplace_back(std::make_unique<Subscriber>()).get();
+    who->origin = origin;
+    who->account = budget_.open();
     news_ = true;
   }
   auto& list = who->subscriptions;
@@ -82,10 +86,10 @@ Result<void> Subscribers::subscribe(const Origin& origin, const std::string& wha
     known = list.insert(list.end(), std::make_unique<Subscription>());
     (*known)->what = what;
     (*known)->due = now;
-    if (!stream) (*known)->feed.add(what);
   }
   Subscription& s = **known;
   const auto period = static_cast<std::int64_t>(1e9 / rate);
+  if (!stream) who->feed.add(what, period);
   news_ = news_ || (stream && s.period != period);
   s.period = period;
   s.due = std::min(s.due, now + period);
@@ -100,74 +104,141 @@ Result<void> Subscribers::subscribe(const Origin& origin, const std::string& wha
 void Subscribers::unsubscribe(const Origin& origin, const std::string* what) {
   Subscriber* const who = find(origin);
   if (who == nullptr) return;
-  std::erase_if(who->subscriptions, [&](const auto& s) { return what == nullptr || s->what == *what; });
-  std::erase_if(list_, [](const auto& s) { return s->subscriptions.empty(); });
+  const auto gone = [&](const auto& s) { return what == nullptr || s->what == *what; };
+  for (const auto& s : who->subscriptions) {
+    if (gone(s) && !s->stream) who->feed.remove(s->what);
+  }
+  std::erase_if(who->subscriptions, gone);
+  forget_idle();
   news_ = true;
 }
 
 void Subscribers::lapse(std::int64_t now) {
   for (const auto& who : list_) {
-    const auto gone = std::erase_if(who->subscriptions, [&](const auto& s) { return s->lapses <= now; });
-    news_ = news_ || gone > 0;
-  }
-  std::erase_if(list_, [](const auto& s) { return s->subscriptions.empty(); });
-}
-
-void Subscribers::work() {
-  if (list_.empty()) return;
-  const std::int64_t now = clock_.steady();
-  lapse(now);
-  const std::shared_ptr<const Image> image = link_.images.read();
-  if (image != nullptr && image->number != heard_) hear(image);
-  const bool fresh = asked_ != 0 && image != nullptr && image->asks >= asked_;
-  if (fresh) asked_ = 0;
-  bool due = false;
-  for (const auto& who : list_) {
+    const auto lapsed = [now](const auto& s) { return s->lapses <= now; };
+    if (std::ranges::none_of(who->subscriptions, lapsed)) continue;
+    news_ = true;
     for (const auto& s : who->subscriptions) {
-      if (s->stream || s->due > now) continue;
-      if (fresh) {
-        tell(*who, *s);
-        s->due += ((now - s->due) / s->period + 1) * s->period;
-      } else {
-        due = true;
-      }
+      if (lapsed(s) && !s->stream) who->feed.remove(s->what);
     }
+    std::erase_if(who->subscriptions, lapsed);
   }
-  if (due && asked_ == 0) asked_ = link_.ask_image();
+  forget_idle();
 }
 
-void Subscribers::hear(const std::shared_ptr<const Image>& image) {
-  heard_ = image->number;
-  for (const auto& who : list_) {
-    for (const auto& s : who->subscriptions) {
-      if (s->stream) continue;
-      if (!std::exchange(s->looked_at, true)) look_at(*who, *s, *image);
-      s->feed.hear(image, who->origin);
-    }
-  }
-}
-
-// whether there is such a value; one that there is not may come yet
-void Subscribers::look_at(const Subscriber& who, Subscription& s, const Image& image) {
-  PatternBudget budget;
-  const Result<std::vector<TreePlace>> places = image.tree->match(s.what, budget, Feed::kMostValues);
-  const auto is_value = [](const TreePlace& p) { return p.row != nullptr && p.row->kind != RowKind::action; };
-  if (places && std::ranges::any_of(*places, is_value)) return;
-  const std::string why = !places ? places.error() : fmt::format("'{}' is no value", printable(s.what));
-  send_({Outgoing::To::error, who.origin, error_message("/subscribe", fmt::format("{}; it is waited for", why))});
-}
-
-void Subscribers::tell(const Subscriber& who, Subscription& s) {
-  s.feed.tell([&](const std::string& path, const Row& row, const RowValue& value) {
-    Outgoing out{Outgoing::To::sender, who.origin, {path, {}}};
-    for (std::uint32_t i = 0; i < row.width; i++) out.message.args.push_back(Arg::of(value.numbers[i]));
-    if (row.type == RowType::text) out.message.args.push_back(Arg::of(value.text));
-    send_(out);
+void Subscribers::forget_idle() {
+  std::erase_if(list_, [this](const auto& who) {
+    if (!who->subscriptions.empty()) return false;
+    budget_.close(who->account);
     return true;
   });
 }
 
+void Subscribers::work() {
+  if (list_.empty()) {
+    in_round_ = false;
+    link_.health.set(HealthItem::reduced, 0);
+    return;
+  }
+  const std::int64_t now = clock_.steady();
+  lapse(now);
+  budget_.refill(now);
+  report(now);
+  if (!in_round_) begin_round();
+  if (in_round_ && !go_round(now)) return;
+  if (asked_ != 0) return;
+  const bool due = std::ranges::any_of(list_, [now](const auto& who) {
+    return std::ranges::any_of(who->subscriptions, [now](const auto& s) { return !s->stream && s->due <= now; });
+  });
+  if (due) asked_ = link_.ask_image();
+}
+
+void Subscribers::begin_round() {
+  const std::shared_ptr<const Image> newest = link_.images.read();
+  if (newest == nullptr) return;
+  const bool fresh = asked_ != 0 && newest->asks >= asked_;
+  if (newest->number == heard_ && !fresh) return;
+  image_ = newest;
+  heard_ = newest->number;
+  tells_ = fresh;
+  if (fresh) asked_ = 0;
+  in_round_ = true;
+  served_ = 0;
+  first_++;
+}
+
+// false: there is more to be done
+bool Subscribers::go_round(std::int64_t now) {
+  int left = kSlice;
+  for (; served_ < list_.size(); served_++) {
+    if (left <= 0 || !serve(*list_[(first_ + served_) % list_.size()], now, left)) return false;
+  }
+  in_round_ = false;
+  image_ = nullptr;
+  return true;
+}
+
+// false: there is more to be done for this one
+bool Subscribers::serve(Subscriber& who, std::int64_t now, int& left) {
+  if (!who.feed.hear_some(image_, who.origin)) return false;
+  if (std::exchange(who.heard, heard_) != heard_) look_at(who);
+  if (!tells_) return true;
+  for (const auto& s : who.subscriptions) {
+    if (s->stream || s->due > now) continue;
+    if (left <= 0 || !tell(who, *s, left)) return false;
+    s->due += ((now - s->due) / s->period + 1) * s->period;
+  }
+  return true;
+}
+
+// whether there are such values; those that there are not may come yet
+void Subscribers::look_at(Subscriber& who) {
+  for (const auto& s : who.subscriptions) {
+    if (s->stream || std::exchange(s->looked_at, true)) continue;
+    const std::string_view problem = who.feed.problem(s->what);
+    if (problem.empty()) continue;
+    send_({Outgoing::To::error, who.origin, error_message("/subscribe", fmt::format("{}; it is waited for", problem))});
+  }
+  if (!who.feed.truncated() || std::exchange(who.said_truncated, true)) return;
+  const std::string text = fmt::format("reaches more than {} values; the others are not sent", Feed::kMostValues);
+  send_({Outgoing::To::error, who.origin, error_message("/subscribe", text)});
+}
+
+// false: the slice is over
+bool Subscribers::tell(Subscriber& who, const Subscription& s, int& left) {
+  bool over = false;
+  const auto [count, all] = who.feed.tell(s.what, [&](const std::string& path, const Row& row, const RowValue& value) {
+    over = left <= 0;
+    if (over) return false;
+    Outgoing out{Outgoing::To::sender, who.origin, {path, {}}};
+    for (std::uint32_t i = 0; i < row.width; i++) out.message.args.push_back(Arg::of(value.numbers[i]));
+    if (row.type == RowType::text) out.message.args.push_back(Arg::of(value.text));
+    if (!send_(out)) return false;
+    left--;
+    return true;
+  });
+  left -= static_cast<int>(count / kComparedForOne);
+  return all || !over;
+}
+
+bool Subscribers::spend(const Endpoint& end, std::size_t bytes, std::size_t datagrams) {
+  Subscriber* const who = find({Hand::osc, end.ip, end.port});
+  return who != nullptr && who->account->spend(bytes, datagrams);
+}
+
+void Subscribers::report(std::int64_t now) {
+  for (const SendBudget::Report& report : budget_.reports(now)) {
+    const auto who = std::ranges::find(list_, report.account, [](const auto& each) { return each->account; });
+    Message message{"/subscription/full", {}};
+    if (report.reduced)
+      message = {"/subscription/reduced", {Arg::of(std::round(report.values)), Arg::of(std::round(report.bytes))}};
+    send_({Outgoing::To::direct, (*who)->origin, std::move(message)});
+  }
+  link_.health.set(HealthItem::reduced, budget_.reduced());
+}
+
 std::optional<std::int64_t> Subscribers::wait() const {
+  if (in_round_) return 0;
   std::optional<std::int64_t> soonest;
   const auto earlier = [&](std::int64_t at) { soonest = std::min(soonest.value_or(at), at); };
   for (const auto& who : list_) {
@@ -176,6 +247,7 @@ std::optional<std::int64_t> Subscribers::wait() const {
       if (!s->stream && asked_ == 0) earlier(s->due);
     }
   }
+  if (!list_.empty()) earlier(budget_.window_end());
   if (!soonest) return std::nullopt;
   return std::max<std::int64_t>(0, *soonest - clock_.steady());
 }
@@ -185,7 +257,7 @@ std::vector<Target> Subscribers::targets() const {
   for (const auto& who : list_) {
     for (const auto& s : who->subscriptions) {
       if (!s->stream) continue;
-      targets.push_back({*s->stream, {who->origin.ip, who->origin.port}});
+      targets.push_back({*s->stream, {who->origin.ip, who->origin.port}, true});
     }
   }
   return targets;

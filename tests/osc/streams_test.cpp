@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
+
 #include "base/system/udp_socket.h"
 #include "osc/osc_test_tools.h"
 #include "osc/stream_test_world.h"
@@ -58,6 +60,58 @@ TEST(Streams, OneFrameAPeriodWithoutDrift) {
   desk.hand.ns += desk.streams.wait().value();
   // 601 periods of 16 666 666 ns, whatever happened in between
   EXPECT_EQ(desk.hand.ns - begin, 601 * std::int64_t{16'666'666});
+}
+
+TEST(Streams, SubscribersFramesPassTheGateAndOthersDoNot) {
+  StreamsDesk desk;
+  std::size_t bytes = 0;
+  int asked = 0;
+  bool open = false;
+  Streams streams(desk.engine.link, kTestOffsets, desk.clock, [&](const Endpoint& to, std::size_t size, std::size_t) {
+    EXPECT_EQ(to, desk.b.end());
+    bytes = size;
+    asked++;
+    return open;
+  });
+  Target subscribed = desk.target(desk.b, 10);
+  subscribed.subscribed = true;
+  streams.set_targets({desk.target(desk.a, 10), subscribed});
+  streams.send_due(desk.sender);
+  EXPECT_EQ(desk.sent(), 1u);
+  EXPECT_EQ(desk.a.receive()->size(), bytes);
+  open = true;
+  desk.hand.turn(0.1);
+  streams.send_due(desk.sender);
+  EXPECT_EQ(desk.sent(), 3u);
+  EXPECT_EQ(asked, 2) << "a frame that was withheld is left out";
+}
+
+TEST(Streams, OneCallSendsASliceToSubscribersInTurn) {
+  StreamsDesk desk;
+  const auto snapshot = desk.engine.link.snapshots.spare();
+  std::vector<FakeBody> bodies;
+  bodies.reserve(300);
+  for (int i = 0; i < 300; i++) bodies.push_back({"body" + std::to_string(i), 17});
+  *snapshot = test_world(bodies);
+  desk.engine.link.snapshots.publish(snapshot);
+  std::vector<Endpoint> served;
+  Streams streams(desk.engine.link, kTestOffsets, desk.clock, [&](const Endpoint& to, std::size_t, std::size_t) {
+    served.push_back(to);
+    return true;
+  });
+  std::vector<Target> targets;
+  const std::array<Client, 6> clients;
+  for (const Client& client : clients) {
+    targets.push_back(desk.target(client, 10));
+    targets.back().subscribed = true;
+  }
+  streams.set_targets(targets);
+  for (std::size_t call = 1; call <= 3; call++) {
+    streams.send_due(desk.sender);
+    EXPECT_EQ(served.size(), 2 * call) << "two frames are more than a slice";
+    EXPECT_EQ(streams.wait() == 0, call < 3);
+  }
+  for (std::size_t i = 0; i < clients.size(); i++) EXPECT_EQ(served[i], clients[i].end());
 }
 
 TEST(Streams, EarlySendsNothing) {
