@@ -195,7 +195,7 @@ class Desk {
     }
     const Counters& counters = link_.counters;
     // every message came to one end, and each refusal was told to its sender
-    const std::uint64_t ended = executed_ + pongs_ + subscribed_ + refused_here_ + counters.dropped;
+    const std::uint64_t ended = executed_ + pongs_ + subscribed_ + tokens_ + refused_here_ + counters.dropped;
     must(counters.received >= ended + uncounted_);
     if (nothing_is_held && std::exchange(urgent_, false)) uncounted_ = counters.received - ended;
     must(!nothing_is_held || counters.received == ended + uncounted_);
@@ -219,9 +219,13 @@ class Desk {
                         subscribed_ += done ? 1 : 0;
                         return done;
                       },
-                      [this](const Origin& origin) { return subscribers_.follows(origin); }},
+                      [this](const Origin& origin) { return subscribers_.follows(origin); },
+                      [](const Endpoint&, std::size_t) {}, [this](const Message&, const Origin&) { tokens_++; }},
                      clock_};
-  Subscribers subscribers_{link_, clock_, [this](const Outgoing& out) { check_packet(out.message); }};
+  Subscribers subscribers_{link_, clock_, [this](const Outgoing& out) {
+                             check_packet(out.message);
+                             return true;
+                           }};
   PacketBuffer buffer_;
   [[maybe_unused]] PacketBuffer oscpack_buffer_;
   std::vector<Command> commands_;
@@ -233,6 +237,7 @@ class Desk {
   bool urgent_ = false;          // one came since it was counted
   std::uint64_t pongs_ = 0;
   std::uint64_t subscribed_ = 0;
+  std::uint64_t tokens_ = 0;
   std::uint64_t refused_here_ = 0;
   std::uint64_t errors_ = 0;
 };
