@@ -12,9 +12,6 @@
 #include <string>
 #include <vector>
 
-#include <fmt/format.h>
-#include <lua.hpp>
-
 #include "base/sanitized.h"
 #include "base/text.h"
 #include "lua_runs.h"
@@ -61,9 +58,11 @@ bool is_protected(const std::vector<std::string>& cells) { return !cells.at(kPro
 
 // The column of the LuaJIT that this program runs with.
 std::optional<std::size_t> installed() {
-  if (std::string_view(LUAJIT_VERSION) == "LuaJIT 2.1.1737090214") return kDebian13;
-  if (std::string_view(LUAJIT_VERSION) != "LuaJIT 2.1.0-beta3") return std::nullopt;
-  return run_plainly("(...)(table.nkeys ~= nil)", {}).starts_with("true") ? kFork : kDebian12;
+  const std::string version = run_plainly("(...)(jit.arch, jit.version, (pcall(require, 'table.nkeys')))", {});
+  if (version.starts_with("x64 LuaJIT 2.1.1737090214 ")) return kDebian13;
+  if (version.starts_with("x64 LuaJIT 2.1.0-beta3 true")) return kFork;
+  if (version.starts_with("x64 LuaJIT 2.1.0-beta3 ")) return kDebian12;
+  return std::nullopt;
 }
 
 TEST(LuaFaults, TheTableHasARowForEach) {
@@ -89,6 +88,7 @@ TEST(LuaFaults, ScenesHaveNone) {
   const auto expected = run_texts(texts, {false, 0});
   ASSERT_EQ(expected.size(), texts.size());
   for (const int hot_loop : {0, 1}) {
+    if (kSanitized && hot_loop == 0) continue;  // they take too long there
     for (std::size_t i = 0; i < texts.size(); i++) {
       const auto result = run_texts({texts[i]}, {true, hot_loop});
       EXPECT_EQ(result.at(0), expected[i]) << names[i] << ", hot_loop " << hot_loop;
@@ -100,7 +100,7 @@ TEST(LuaFaults, ScenesHaveNone) {
 // sanitizer reports a crash by itself.
 TEST(LuaFaults, TheInstalledVersionHasThoseOfItsColumn) {
   const std::optional<std::size_t> column = installed();
-  if (kSanitized || !column || !run_plainly("(...)(jit.arch)", {}).starts_with("x64")) return;
+  if (kSanitized || !column) return;
   const auto table = rows();
   for (const auto& [name, text] : fault_texts()) {
     const std::string expected = run_plainly(text, {false, 0});
