@@ -1,6 +1,8 @@
 // A display of the test's own, with hands and eyes.
 #pragma once
 
+#include <memory>
+
 #include "app/program.h"
 
 namespace limber::app_test {
@@ -10,12 +12,18 @@ class Display {
  public:
   /// `more`: further arguments of the server.
   explicit Display(const std::string& screen = "320x240x24", const std::vector<std::string>& more = {})
-      : server_(with({"Xvfb", "-displayfd", "1", "-screen", "0", screen, "-nolisten", "tcp", "-fbdir", folder_.path()},
-                     more)) {
-    EXPECT_TRUE(server_.wait_for("\n", true)) << "apt-get install xvfb\n" << server_.err();
-    name_ = ":" + server_.out().substr(0, server_.out().find('\n'));
+      : words_(with({"-displayfd", "1", "-screen", "0", screen, "-nolisten", "tcp", "-fbdir", folder_.path()}, more)),
+        server_(std::make_unique<Running>(with({"Xvfb"}, words_))) {
+    EXPECT_TRUE(server_->wait_for("\n", true)) << "apt-get install xvfb\n" << server_->err();
+    name_ = ":" + server_->out().substr(0, server_->out().find('\n'));
   }
-  void end() { server_.signal(SIGKILL); }
+  void end() { server_->signal(SIGKILL); }
+  /// Another server with the same number, once the one before is gone.
+  void begin_again() {
+    server_.reset();
+    server_ = std::make_unique<Running>(with({"Xvfb", name_}, words_));
+    EXPECT_TRUE(server_->wait_for("\n", true)) << server_->err();
+  }
   std::vector<std::string> environment() const {
     std::vector<std::string> all = without_leak_search();
     all.insert(all.end(),
@@ -55,7 +63,8 @@ class Display {
   }
 
   Folder folder_;
-  Running server_;
+  std::vector<std::string> words_;
+  std::unique_ptr<Running> server_;
   std::string name_;
 };
 

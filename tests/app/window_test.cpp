@@ -250,6 +250,20 @@ TEST(Window, TheShowOutlivesTheDisplay) {
   EXPECT_NE(ran.out.find("hash "), std::string::npos) << ran.out;
 }
 
+TEST(Window, ARequestedOneWaitsForItsDisplay) {
+  Display display;
+  display.end();
+  const Folder folder;
+  const std::string scene = folder.file("s.lua", kFallingBall);
+  Running running(limber(quiet(scene, {"--windowed"}), display.environment()));
+  ASSERT_TRUE(running.wait_for("the window opens as soon as there is a display")) << running.err();
+  ASSERT_TRUE(running.wait_for(" real time")) << running.err();
+  display.begin_again();
+  ASSERT_TRUE(running.wait_for("limber: window ")) << running.err();
+  running.signal(SIGINT);
+  EXPECT_EQ(running.finish().code, 0);
+}
+
 TEST(Window, WithoutOneItSaysWhy) {
   const Folder folder;
   const std::string scene = folder.file("s.lua", kFallingBall);
