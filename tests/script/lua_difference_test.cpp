@@ -67,10 +67,10 @@ std::optional<std::uint64_t> first_difference(std::uint64_t first, std::uint64_t
 
 TEST(LuaDifference, CompiledProgramsGiveTheInterpretedResults) {
   const std::uint64_t first = number_of("LIMBER_LUA_SEED", 1);
-  const std::uint64_t end = first + number_of("LIMBER_LUA_PROGRAMS", kSanitized ? 20 : 400);
+  const std::uint64_t end = first + number_of("LIMBER_LUA_PROGRAMS", kSanitized ? 20 : 800);
   const std::uint64_t most = number_of("LIMBER_LUA_REPORTS", 1);
   const char* const progress = std::getenv("LIMBER_LUA_PROGRESS");
-  constexpr std::uint64_t kBatch = 200;
+  constexpr std::uint64_t kBatch = script_test::kProgramsAlike;
   std::uint64_t found = 0;
   for (std::uint64_t seed = first; seed < end && found < most;) {
     const std::uint64_t count = std::min(kBatch, end - seed);

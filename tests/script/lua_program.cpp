@@ -199,9 +199,16 @@ constexpr Rule kLoops[] = {
 };
 constexpr Rule kWalks[] = {{1, "for $j, v in ipairs($l) do"}, {1, "for $j, v in pairs($t) do $j = tonumber($j) or 1"}};
 
+// or lengths, which go with stored elements
+bool uses_tables(std::string_view text) {
+  for (const std::string_view part : {"$t", "$l", "$h", "$T", "$L", "t0", "t1", "t2", "{ 1", "#$"})
+    if (text.find(part) != text.npos) return true;
+  return false;
+}
+
 class Maker {
  public:
-  explicit Maker(std::uint64_t seed) : random_(seed) {}
+  explicit Maker(std::uint64_t seed, bool tables) : random_(seed), tables_(tables) {}
 
   LuaProgram program() {
     LuaProgram out;
@@ -209,12 +216,14 @@ class Maker {
     line("local n0, n1, n2, n3 = 0, 1, $0, $0");
     line("local s0, s1, b0 = 'a', $1, true");
     line("local v0, v1 = $0, $1");
-    line("local t0, t1, t2 = $L, $L, $L");
-    line("local h0, h1 = $T, $T");
+    if (tables_) {
+      line("local t0, t1, t2 = $L, $L, $L");
+      line("local h0, h1 = $T, $T");
+    }
     names_ = true;
-    if (chance(20)) line("t1 = t0");
-    if (chance(20)) line("h1 = h0");
-    if (chance(35)) {
+    if (tables_ && chance(20)) line("t1 = t0");
+    if (tables_ && chance(20)) line("h1 = h0");
+    if (tables_ && chance(35)) {
       out.nodes.push_back(metatable());
       if (chance(40)) line("h1 = m0");
     }
@@ -225,6 +234,7 @@ class Maker {
       out.nodes.push_back(loop_of(8 + below(20), 1));
       line("out(n1, n2, n3, s0, s1, b0, v0, v1)");
     }
+    if (!tables_) return out;
     for (const char* name : {"dump(t0)", "dump(t1)", "dump(t2)", "dump(h0)", "dump(h1)", "dump(v0)"}) line(name);
     return out;
   }
@@ -236,11 +246,14 @@ class Maker {
   std::string choose(std::span<const Rule> rules, int depth) {
     const unsigned has = (depth_ > 0 ? loop : 0U) | (varargs_ ? varargs : 0U) | (object_ ? object : 0U) |
                          (functions_ > 0 ? functions : 0U);
+    const auto fits = [&](const Rule& rule) {
+      return (rule.needs & ~has) == 0 && (tables_ || !uses_tables(rule.text));
+    };
     int sum = 0;
-    for (const Rule& rule : rules) sum += (rule.needs & ~has) == 0 ? rule.weight : 0;
+    for (const Rule& rule : rules) sum += fits(rule) ? rule.weight : 0;
     int left = below(sum);
     for (const Rule& rule : rules) {
-      if ((rule.needs & ~has) != 0) continue;
+      if (!fits(rule)) continue;
       left -= rule.weight;
       if (left < 0) return expand(rule.text, depth);
     }
@@ -353,7 +366,7 @@ class Maker {
 
   LuaNode loop_of(int rounds, int depth) {
     rounds_ = rounds;
-    LuaNode node{rounds < 6 && chance(40) ? choose(kWalks, 0) : choose(kLoops, 0), {}, "end"};
+    LuaNode node{rounds < 6 && tables_ && chance(40) ? choose(kWalks, 0) : choose(kLoops, 0), {}, "end"};
     depth_++;
     for (int i = 1 + below(5); i > 0; i--) node.body.push_back(statement(depth));
     depth_--;
@@ -387,6 +400,7 @@ class Maker {
   int functions_ = 0;     // that can be called
   int depth_ = 0;         // of loops
   int rounds_ = 0;        // of the loop that is made
+  bool tables_ = true;    // whether there are t0, h0, …
   bool names_ = false;    // whether variables exist
   bool varargs_ = false;  // whether there is `...`
   bool object_ = false;   // whether there is m0
@@ -419,7 +433,7 @@ std::string LuaProgram::text() const {
   return out;
 }
 
-LuaProgram make_program(std::uint64_t seed) { return Maker(seed).program(); }
+LuaProgram make_program(std::uint64_t seed) { return Maker(seed, (seed - 1) / kProgramsAlike % 4 != 3).program(); }
 
 LuaProgram shrink(LuaProgram program, const std::function<bool(const LuaProgram&)>& differs, int tries) {
   const auto make_smaller = [&](bool keep_body) {

@@ -22,6 +22,9 @@ struct LuaProgram {
   std::string text() const;
 };
 
+/// Of four times as many programs in a row, the last ones have no tables.
+inline constexpr std::uint64_t kProgramsAlike = 200;
+
 /// Errors are results, too. Runs for about a millisecond.
 LuaProgram make_program(std::uint64_t seed);
 
