@@ -2,7 +2,6 @@
 -- The interpreter runs a loop at first and compiled code runs it later, so that a script would depend on that moment.
 --   math.min, math.max   NaN and -0                      2.1.0-beta3 (Debian 12)
 --   math.ceil            -0                              2.1.0-beta3 of 2022 (Debian 12)
---   next in a loop       ends too early                  2.1.0-beta3 of 2022 (Debian 12)
 --   string.sub           positions outside of the text   all; 2.1.1737090214 (Debian 13) also crashes
 --   bit.*                fractions and large numbers     arm64
 local P = ...
@@ -41,12 +40,6 @@ function math.ceil(x)
   end
   return -floor(-x)
 end
-
--- A loop over LuaJIT's own `next` has instructions of its own, which end it too early once its compilation has failed. It
--- has not over another function; scripts see neither.
-local native_next = next
-function next(t, key) return native_next(t, key) end
-function pairs(t) return next, t end
 
 -- first and last position of a part of a text of n bytes, between 1 and n unless the part is empty
 local function bounds(n, first, last)

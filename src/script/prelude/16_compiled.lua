@@ -80,6 +80,9 @@ local function scan(proto)
         found.clears = true
         if keys then found.outgrown = true end
       end
+    elseif name == "length" then
+      if found.length then found.lengths = true end
+      found.length = true
     elseif name then
       found[name] = true
     elseif op >= kMove then
@@ -145,6 +148,8 @@ local function inspect(proto, is_chunk)
   end)
   if not is_chunk then P.watch(proto) end
   if not kOld then return end
+  -- one length may be taken for another, although an element was set through another name in between
+  if found.lengths and (found.element or uses_tables) then interpret(proto) end
   if is_chunk then
     -- it runs once, and interpreted after a save
     if found.loop and (found.kept or found.length or uses_tables) then interpret(proto) end

@@ -122,9 +122,11 @@ local function add_things(keys, things)
   P.sort(things, by_order)
   for _, entry in ipairs(things) do keys[#keys + 1] = entry.thing end
 end
+-- A loop over `next` itself has instructions of its own, by which LuaJIT of 2022 ends it too early once its compilation failed.
+local function key_after(t, key) return (next(t, key)) end
 local function gather_keys(t)
   local numbers, texts, flags, things, sorted, last = {}, {}, {}, {}, true, -math.huge
-  for key in next, t do
+  for key in key_after, t do
     local kind = type(key)
     if kind == "number" then
       numbers[#numbers + 1], sorted, last = key, sorted and key > last, key
