@@ -3,7 +3,6 @@
 
 #include <filesystem>
 #include <fstream>
-#include <iterator>
 
 #include <fmt/format.h>
 
@@ -27,11 +26,6 @@ struct Nobody : ScriptHost {
   void script_error(std::string_view, int, std::string_view) override {}
 };
 
-std::string content_of(const std::string& file) {
-  std::ifstream in(file, std::ios::binary);
-  return {std::istreambuf_iterator<char>(in), {}};
-}
-
 }  // namespace
 
 std::string annotations_text() {
@@ -51,8 +45,10 @@ int annotate_command(const std::string& file) {
   std::error_code ignored;
   const std::filesystem::path folder = std::filesystem::path(file).parent_path();
   if (!folder.empty()) std::filesystem::create_directories(folder, ignored);
-  std::ofstream(file, std::ios::binary) << text;
-  if (content_of(file) == text) return kFine;
+  std::ofstream out(file, std::ios::binary);
+  out << text;
+  out.close();
+  if (out) return kFine;
   return fail(kMachine, fmt::format("{} can't be written; look at the folder's permissions", file));
 }
 

@@ -27,11 +27,11 @@ void Ending::watch() {
   bool asked = false;
   for (int looks = 0, more = 0; !done_.load();) {
     const system::Signal signal = system::wait_for_signal(kLook);
-    if (done_.load()) return;
     if (signal == system::Signal::end) {
       asked = true;
       hurry_output();
     }
+    if (done_.load()) return;
     if (asked && ++more > kLooksMore) {
       print_notice("ended before all files were written");
       end_program(kInput);

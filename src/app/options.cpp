@@ -4,9 +4,11 @@
 #include <algorithm>
 #include <array>
 #include <cstdint>
+#include <new>
 #include <optional>
 #include <sstream>
 #include <string>
+#include <system_error>
 #include <vector>
 
 #include <fmt/format.h>
@@ -423,6 +425,15 @@ int run_command(int argc, char** argv) {
 
 }  // namespace
 
-int run_command_line(int argc, char** argv) { return finish_command(run_command(argc, argv)); }
+int run_command_line(int argc, char** argv) {
+  try {
+    return finish_command(run_command(argc, argv));
+  } catch (const std::bad_alloc&) {
+    print_notice("there is not enough memory; end other programs, or raise ulimit -v");
+  } catch (const std::system_error& error) {  // of a thread that could not be started
+    print_notice("{}; end other programs, or raise ulimit -u and ulimit -v", error.code().message());
+  }
+  return kMachine;
+}
 
 }  // namespace limber

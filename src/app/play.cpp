@@ -208,23 +208,31 @@ int play_scene(const PlayOptions& options, EngineOptions engine_options, const O
   bool interrupted = false;
   {
     Show show(engine);
-    ShowLoop loop(show, engine, link, notifier, options);
+    FrameWatch frames;
+    ShowLoop loop(show, engine, link, notifier, frames, options);
     loop.wait_for_scene();
-    if (!show.result() && !loop.may_wait_for_mending()) return give_up(kInput, show.result().error());
+    if (!show.result() && !loop.may_wait_for_mending()) return give_up(show.fault(), show.result().error());
     const std::optional<ListenAddress> at = query_address(query_wish, effective_plan(osc, link.osc_plan.read().get()));
     if (const Result<void> open = open_ports(osc, at, network, query); !open) return give_up(kMachine, open.error());
     if (!options.fast) open_console(console);
+    const auto end_without_window = [&] {
+      const bool ended = interrupted || loop.run_headless();
+      show.end();
+      end_program(close(ended));
+    };
+    frames.start([&] {
+      log_error("the display does not answer");
+      end_without_window();
+    });
     const bool waits = loop.open_window();
-    if (!show.result() && !waits) return give_up(kInput, show.result().error());
+    if (!show.result() && !waits) return give_up(show.fault(), show.result().error());
     show.go(waits);
     if (scene_watch) scene_watch->start();
     if (!show.result()) log_error("{}\nthe stage is empty and waits for the mended file", show.result().error());
     // where Xlib ends the program when the display goes, the show goes on in its place, and the program ends with that
     Window::on_display_lost([&] {
       log_error("the display is lost; playing on headless");
-      const bool ended = loop.run_headless();
-      show.end();
-      end_program(close(ended));
+      end_without_window();
     });
     loop.each_second([&] {
       open_query_again(at, query);
@@ -232,6 +240,8 @@ int play_scene(const PlayOptions& options, EngineOptions engine_options, const O
     });
     interrupted = loop.run();
     Window::on_display_lost({});
+    frames.ending();
+    loop.close_window();
   }
   return close(interrupted);
 }

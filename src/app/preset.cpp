@@ -2,8 +2,6 @@
 #include "app/preset.h"
 
 #include <algorithm>
-#include <fstream>
-#include <iterator>
 #include <utility>
 #include <vector>
 
@@ -12,6 +10,7 @@
 #include "app/exit_code.h"
 #include "app/paths.h"
 #include "base/output.h"
+#include "base/system/file.h"
 #include "base/text.h"
 #include "engine/preset_file.h"
 #include "engine/preset_import.h"
@@ -19,6 +18,8 @@
 namespace limber {
 
 namespace {
+
+constexpr std::uintmax_t kMostBytes = std::uintmax_t{64} << 20u;  // of a file of presets of another program
 
 // behind those that are there, under names that nobody has
 void append(PresetList& list, const PresetList& more) {
@@ -35,13 +36,11 @@ void append(PresetList& list, const PresetList& more) {
 }  // namespace
 
 int preset_command(const PresetCommand& command) {
-  std::ifstream in(command.file, std::ios::binary);
-  if (!in)
-    return fail(kInput,
-                fmt::format("{}: there is no such file; in Max, pattrstorage writes one by the message writejson",
-                            command.file));
-  const std::string text{std::istreambuf_iterator<char>(in), {}};
-  const Result<PresetsRead> imported = import_pattrstorage(text);
+  const Result<std::string> text = system::read_file(command.file, kMostBytes);
+  if (!text)
+    return fail(kInput, fmt::format("{}: {}; in Max, pattrstorage writes such a file by the message writejson",
+                                    printable(command.file), text.error()));
+  const Result<PresetsRead> imported = import_pattrstorage(*text);
   if (!imported) return fail(kInput, fmt::format("{}: {}", command.file, imported.error()));
   std::vector<std::string> looked;
   const std::string scene = find_scene(command.scene, looked);

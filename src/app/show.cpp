@@ -1,6 +1,10 @@
 // The simulation's thread.
 #include "app/show.h"
 
+#include <new>
+#include <string>
+#include <system_error>
+
 #include "base/system/signals.h"
 #include "base/system/thread.h"
 #include "engine/engine.h"
@@ -23,11 +27,24 @@ void Show::end() {
 
 void Show::play() {
   system::name_this_thread("limber-sim");
-  result_ = engine_.start();
+  result_ = start();
   change(State::started);
   go_.acquire();
   if (result_ || anyway_.load()) engine_.run();
   change(State::over);
+}
+
+Result<void> Show::start() {
+  std::string why;
+  try {
+    return engine_.start();
+  } catch (const std::bad_alloc&) {
+    why = "there is not enough memory for the scene";
+  } catch (const std::system_error& error) {  // of a thread that could not be started
+    why = error.code().message();
+  }
+  fault_ = kMachine;
+  return Error{why + "; end other programs, or raise ulimit -u and ulimit -v"};
 }
 
 void Show::change(State state) {

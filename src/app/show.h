@@ -6,6 +6,7 @@
 #include <semaphore>
 #include <thread>
 
+#include "app/exit_code.h"
 #include "base/result.h"
 
 namespace limber {
@@ -25,6 +26,8 @@ class Show {
   bool over() const { return state_.load() == State::over; }
   /// What the scene's run gave; once it has started.
   const Result<void>& result() const { return result_; }
+  /// Whose fault that is: kInput or kMachine.
+  int fault() const { return fault_; }
   /// The first tick may come. `anyway`: after a fault of the scene's, too; the world is empty and waits for a good run.
   void go(bool anyway);
   void end();
@@ -33,10 +36,12 @@ class Show {
   enum class State : std::uint8_t { starting, started, over };
 
   void play();
+  Result<void> start();
   void change(State state);
 
   Engine& engine_;
   Result<void> result_;
+  int fault_ = kInput;
   std::atomic<State> state_{State::starting};
   std::atomic<bool> anyway_{false};
   std::counting_semaphore<2> go_{0};

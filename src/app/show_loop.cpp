@@ -33,12 +33,13 @@ constexpr std::chrono::milliseconds kStatusEvery = 1s;
 
 }  // namespace
 
-ShowLoop::ShowLoop(const Show& show, Engine& engine, EngineLink& link, ServiceNotifier& notifier,
+ShowLoop::ShowLoop(const Show& show, Engine& engine, EngineLink& link, ServiceNotifier& notifier, FrameWatch& frames,
                    const PlayOptions& options)
     : show_(show),
       engine_(engine),
       link_(link),
       notifier_(notifier),
+      frames_(frames),
       options_(options),
       prints_status_(!options.log.quiet && !system::standard_error_is_journal()) {}
 
@@ -63,7 +64,7 @@ bool ShowLoop::open_window() {
   if (options_.fast) return false;
   std::string why;
   if (!options_.picture.headless) {
-    auto window = WindowShow::open(options_.picture, printable(options_.scene), link_);
+    auto window = frames_.call([&] { return WindowShow::open(options_.picture, printable(options_.scene), link_); });
     if (window) {
       window_ = std::move(*window);
       return true;
@@ -77,7 +78,7 @@ bool ShowLoop::open_window() {
 }
 
 bool ShowLoop::try_window() {
-  auto window = WindowShow::open(options_.picture, printable(options_.scene), link_);
+  auto window = frames_.call([&] { return WindowShow::open(options_.picture, printable(options_.scene), link_); });
   if (!window) return false;
   window_ = std::move(*window);
   return true;
@@ -109,7 +110,7 @@ void ShowLoop::retry() {
 bool ShowLoop::run() {
   while (!show_.over()) {
     retry();
-    const WindowShow::End end = window_ != nullptr ? window_->frame() : WindowShow::End::none;
+    const WindowShow::End end = window_ != nullptr ? frames_.call([&] { return window_->frame(); }) : WindowShow::End::none;
     if (end == WindowShow::End::lost) return run_headless();
     const bool closed = end == WindowShow::End::closed;
     const Signal heard = system::wait_for_signal(window_ != nullptr ? 0ms : kStatusEvery);
@@ -132,6 +133,10 @@ bool ShowLoop::run_headless() {
     return true;
   }
   return false;
+}
+
+void ShowLoop::close_window() {
+  frames_.call([&] { window_.reset(); });
 }
 
 void ShowLoop::end_show() {

@@ -6,6 +6,7 @@
 #include <memory>
 #include <utility>
 
+#include "app/frame_watch.h"
 #include "app/play.h"
 #include "app/service_notifier.h"
 #include "app/show.h"
@@ -19,7 +20,8 @@ namespace limber {
 class ShowLoop {
  public:
   /// All of them outlive it.
-  ShowLoop(const Show& show, Engine& engine, EngineLink& link, ServiceNotifier& notifier, const PlayOptions& options);
+  ShowLoop(const Show& show, Engine& engine, EngineLink& link, ServiceNotifier& notifier, FrameWatch& frames,
+           const PlayOptions& options);
 
   /// Until the scene has run. A signal ends the program.
   void wait_for_scene();
@@ -33,6 +35,8 @@ class ShowLoop {
   bool run();
   /// The same, without the window, whose display is gone.
   bool run_headless();
+  /// Closes the window, if there is one.
+  void close_window();
 
  private:
   /// The window was requested, so that it opens as soon as there is a display.
@@ -46,6 +50,7 @@ class ShowLoop {
   Engine& engine_;
   EngineLink& link_;
   ServiceNotifier& notifier_;
+  FrameWatch& frames_;
   const PlayOptions& options_;
   const bool prints_status_;
   std::unique_ptr<WindowShow> window_;

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cerrno>
-#include <system_error>
 #include <utility>
 
 #include <fmt/format.h>
@@ -41,12 +40,7 @@ OutputWriter::~OutputWriter() {
 }
 
 bool OutputWriter::start() {
-  try {
-    thread_ = std::thread([this] { run(); });
-  } catch (const std::system_error&) {
-    return false;
-  }
-  return true;
+  return system::start_thread(thread_, [this] { run(); });
 }
 
 void OutputWriter::write(std::size_t stream, std::string_view text) noexcept {

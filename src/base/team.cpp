@@ -28,7 +28,12 @@ Team::Team(int members)
     : members_(members), watches_(static_cast<unsigned>(members) <= std::thread::hardware_concurrency()) {
   LIMBER_CHECK(members >= 1 && members <= kMost);
   for (int member = 1; member < members; member++) {
-    helpers_.emplace_back([this, member] { help(member); });
+    std::thread helper;
+    if (!system::start_thread(helper, [this, member] { help(member); })) {
+      members_ = member;
+      break;
+    }
+    helpers_.push_back(std::move(helper));
   }
 }
 

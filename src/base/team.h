@@ -18,7 +18,8 @@ class Team {
  public:
   static constexpr int kMost = 64;
 
-  /// `members` from 1 to kMost, the caller of run() counted: so many threads less one are started.
+  /// `members` from 1 to kMost, the caller of run() counted: so many threads less one are started, or as many as the
+  /// system has left; the result of work is the same.
   explicit Team(int members);
   ~Team();
   Team(const Team&) = delete;
@@ -49,7 +50,7 @@ class Team {
   template <class Done>
   void watch(Done&& done) const;
 
-  const int members_;
+  int members_;
   const bool watches_;  // whether each member has a processor to watch on
   // A member's part of a round, in a line of the cache of its own.
   struct alignas(64) Part {

@@ -26,10 +26,17 @@ void PresetKeeper::save(std::shared_ptr<const PresetList> presets) {
     saved_.store(false);
   }
   changed_.notify_all();
-  if (!thread_.joinable()) thread_ = std::thread([this] { run(); });
+  if (!thread_.joinable() && !system::start_thread(thread_, [this] { run(); }))
+    failed_("the system has no thread left to write it; the next save tries again");
 }
 
 void PresetKeeper::finish() {
+  if (!thread_.joinable()) {  // there was none to start
+    end_ = true;
+    run();
+    end_ = false;
+    return;
+  }
   std::unique_lock lock(mutex_);
   changed_.wait(lock, [this] { return wanted_ == nullptr && !writing_; });
 }

@@ -4,8 +4,6 @@
 #include <cerrno>
 #include <cstring>
 #include <filesystem>
-#include <fstream>
-#include <iterator>
 #include <system_error>
 #include <unordered_map>
 #include <utility>
@@ -26,6 +24,7 @@ namespace {
 
 constexpr const char* kHead = "limber recovery";
 constexpr int kVersion = 1;
+constexpr std::uintmax_t kMostBytes = std::uintmax_t{64} << 20u;
 
 std::string reason() { return std::generic_category().message(errno); }
 
@@ -112,13 +111,15 @@ Result<std::unique_ptr<RecoveryFile>> RecoveryFile::open(const std::string& fold
 }
 
 Result<std::optional<LostValues>> RecoveryFile::lost() const {
-  std::ifstream in(lost_file(), std::ios::binary);
-  if (!in) return std::optional<LostValues>();
-  const std::string text{std::istreambuf_iterator<char>(in), {}};
+  std::error_code fault;
+  if (!fs::exists(lost_file(), fault)) return std::optional<LostValues>();
   const auto bad = [&](std::string_view why) {
     return Error{fmt::format("{}: {}; the values of a run that did not end well can't be brought back",
                              printable(lost_file()), why)};
   };
+  const Result<std::string> bytes = system::read_file(lost_file(), kMostBytes);
+  if (!bytes) return bad(bytes.error());
+  const std::string& text = *bytes;
   const std::size_t line = text.find('\n');
   const auto head = nlohmann::json::parse(text.substr(0, line), nullptr, false);
   if (line == std::string::npos || !head.is_object() || !head.contains(kHead) || !head[kHead].is_number_integer())

@@ -39,7 +39,8 @@ Result<std::optional<LostValues>> RecoveryKeeper::open(const std::string& scene)
 }
 
 void RecoveryKeeper::begin() {
-  if (!thread_.joinable()) thread_ = std::thread([this] { run(); });
+  if (!thread_.joinable() && !system::start_thread(thread_, [this] { run(); }))
+    log_warning("the show's values can't be kept for a start after a crash: the system has no thread left");
 }
 
 void RecoveryKeeper::give(const std::string& scene, std::shared_ptr<const Preset> now,

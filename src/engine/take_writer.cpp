@@ -41,14 +41,15 @@ std::string numbered(const std::string& path, int n) {
 }  // namespace
 
 TakeWriter::TakeWriter(Place place, TakeHeader header, std::function<void(const std::string&)> failed)
-    : place_(std::move(place)),
-      header_(std::move(header)),
-      tell_failed_(std::move(failed)),
-      thread_([this] { run(); }) {}
+    : place_(std::move(place)), header_(std::move(header)), tell_failed_(std::move(failed)) {
+  if (system::start_thread(thread_, [this] { run(); })) return;
+  error_ = "the system has no thread left to write the take";
+  failed_ = done_ = open_ = true;
+}
 
 TakeWriter::~TakeWriter() {
   close();
-  thread_.join();
+  if (thread_.joinable()) thread_.join();
 }
 
 Result<void> TakeWriter::opened() {

@@ -87,7 +87,7 @@ class TakeWriter {
   bool full_ = false;
   bool abandoned_ = false;
   std::string error_;
-  std::thread thread_;  // last: it starts when all else is there
+  std::thread thread_;
 };
 
 }  // namespace limber

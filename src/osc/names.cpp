@@ -3,9 +3,10 @@
 
 #include <condition_variable>
 #include <mutex>
-#include <system_error>
 #include <thread>
 #include <utility>
+
+#include "base/system/thread.h"
 
 namespace limber {
 
@@ -54,11 +55,10 @@ std::optional<Result<Endpoint>> HostNames::find(const std::string& host, std::ui
     shared->ended.notify_all();
     shared->ring();
   };
-  try {
-    std::thread(look).detach();
-  } catch (const std::system_error&) {
-    // no more threads: this once it is waited for
-    look();
+  if (std::thread thread; system::start_thread(thread, look)) {
+    thread.detach();
+  } else {
+    look();  // no thread is left: this once it is waited for
   }
   return std::nullopt;
 }

@@ -37,8 +37,8 @@ std::optional<std::string> field(const http::request<http::empty_body>& request,
 
 class Connection : public std::enable_shared_from_this<Connection> {
  public:
-  Connection(boost::asio::ip::tcp::socket socket, QueryDesk& desk, std::uint32_t address)
-      : desk_(desk), seat_(desk, address), stream_(std::move(socket)) {}
+  Connection(boost::asio::ip::tcp::socket socket, QueryDesk& desk, std::uint32_t address, bool stays)
+      : desk_(desk), seat_(desk, address, stays), stream_(std::move(socket)) {}
   ~Connection() { desk_.answering -= answering_; }
   Connection(const Connection&) = delete;
   Connection& operator=(const Connection&) = delete;
@@ -153,17 +153,16 @@ class Connection : public std::enable_shared_from_this<Connection> {
 }  // namespace
 
 void serve_connection(boost::asio::ip::tcp::socket socket, QueryDesk& desk) {
-  if (desk.seats >= QueryLimits::kConnections + kTurnedAway) return;
   boost::system::error_code error;
   const auto peer = socket.remote_endpoint(error);
   const bool known = !error && peer.address().is_v4();
   const std::uint32_t address = known ? peer.address().to_v4().to_uint() : 0;
   const bool allowed = !known || desk.hall.doors().allowed(address);
-  const bool full = desk.full(address);
-  const auto connection = std::make_shared<Connection>(std::move(socket), desk, address);
-  if (full) return connection->turn_away();
-  if (!allowed) return connection->refuse();
-  connection->read();
+  const bool stays = allowed && !desk.full(address);
+  if (!stays && desk.turned_away >= kTurnedAway) return;
+  const auto connection = std::make_shared<Connection>(std::move(socket), desk, address, stays);
+  if (stays) return connection->read();
+  allowed ? connection->turn_away() : connection->refuse();
 }
 
 }  // namespace limber

@@ -31,6 +31,7 @@ struct QueryDesk {
   Hall& hall;
   int seats = 0;
   std::map<std::uint32_t, int> seats_of = {};  ///< By address.
+  int turned_away = 0;                         ///< Connections that are told why they can't stay.
   std::size_t answering = 0;                   ///< Bytes of answers on their way.
 
   bool full(std::uint32_t address) const {
@@ -43,15 +44,18 @@ struct QueryDesk {
 /// Counts what is open, as long as it lives.
 class Seat {
  public:
-  Seat(QueryDesk& desk, std::uint32_t address) : desk_(&desk), address_(address) {
-    desk.seats++;
-    desk.seats_of[address]++;
+  /// `stays`: it counts among those of its address.
+  Seat(QueryDesk& desk, std::uint32_t address, bool stays) : desk_(&desk), address_(address), stays_(stays) {
+    (stays ? desk.seats : desk.turned_away)++;
+    if (stays) desk.seats_of[address]++;
   }
-  Seat(Seat&& other) noexcept : desk_(std::exchange(other.desk_, nullptr)), address_(other.address_) {}
+  Seat(Seat&& other) noexcept
+      : desk_(std::exchange(other.desk_, nullptr)), address_(other.address_), stays_(other.stays_) {}
   Seat& operator=(Seat&&) = delete;
   ~Seat() {
     if (desk_ == nullptr) return;
-    desk_->seats--;
+    (stays_ ? desk_->seats : desk_->turned_away)--;
+    if (!stays_) return;
     const auto taken = desk_->seats_of.find(address_);
     if (--taken->second == 0) desk_->seats_of.erase(taken);
   }
@@ -59,6 +63,7 @@ class Seat {
  private:
   QueryDesk* desk_;
   std::uint32_t address_;
+  bool stays_;
 };
 
 /// Serves a client from its first byte to its last. `desk` outlives the io_context's handlers.

@@ -81,6 +81,26 @@ std::ptrdiff_t read_some(int fd, char* to, std::size_t most) {
   }
 }
 
+Result<std::string> read_file(const std::string& path, std::uintmax_t most) {
+  // O_NONBLOCK: a named pipe that nobody writes to
+  const Descriptor file(open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK));
+  struct stat info {};
+  if (!file.open() || fstat(file.fd(), &info) != 0) return Error{reason()};
+  const FileStatus status = status_of(info);
+  if (!status.file) return Error{"it is a folder or a device, not a file"};
+  if (status.size > most) return Error{fmt::format("it has {} bytes; at most {} are read", status.size, most)};
+  std::string bytes(static_cast<std::size_t>(status.size), '\0');
+  std::size_t count = 0;
+  while (count < bytes.size()) {
+    const std::ptrdiff_t n = read_some(file.fd(), bytes.data() + count, bytes.size() - count);
+    if (n < 0) return Error{reason()};
+    if (n == 0) break;  // it was shortened meanwhile
+    count += static_cast<std::size_t>(n);
+  }
+  bytes.resize(count);
+  return bytes;
+}
+
 bool seek_to(int fd, std::uint64_t place) { return lseek(fd, static_cast<off_t>(place), SEEK_SET) >= 0; }
 
 bool sync_file(int fd) { return fsync(fd) == 0; }

@@ -30,6 +30,9 @@ bool write_all(int fd, std::string_view bytes);
 /// Reads up to `most` bytes; 0: the end, -1: an error.
 std::ptrdiff_t read_some(int fd, char* to, std::size_t most);
 bool seek_to(int fd, std::uint64_t place);
+/// The bytes of a regular file that has at most so many. The error is the reason, without the path: it does not exist,
+/// is a folder or a device, is too large, can't be read. Doesn't wait for anything but the disk.
+Result<std::string> read_file(const std::string& path, std::uintmax_t most);
 /// Waits until the file is on the disk.
 bool sync_file(int fd);
 /// The same; without what only its times tell, where the system makes a difference.

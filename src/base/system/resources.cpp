@@ -57,7 +57,7 @@ Result<void> check_resources(const Resources& needed) {
   if (const int found = count_threads(needed.threads); found < needed.threads) {
     return Error{
         fmt::format("only {} more threads can be started, and {} are needed: raise ulimit -u, or end other "
-                    "programs of this user",
+                    "programs of this user; they need memory, too: ulimit -v",
                     found, needed.threads)};
   }
   return {};

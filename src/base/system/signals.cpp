@@ -28,8 +28,9 @@ Signal kind_of(int signal) {
 void block_signals() {
   const sigset_t set = blocked_signals();
   pthread_sigmask(SIG_BLOCK, &set, nullptr);
-  ::signal(SIGPIPE, SIG_IGN);
-  ::signal(SIGXFSZ, SIG_IGN);  // then a file that may not grow is reported as a full disk is
+  // SIGXFSZ: a file that may not grow is reported as a full disk is. SIGTTOU, SIGTTIN: a terminal whose foreground is
+  // another program's (stty tostop). The others end a program that has no use for them.
+  for (const int signal : {SIGPIPE, SIGXFSZ, SIGTTOU, SIGTTIN, SIGALRM, SIGVTALRM, SIGIO}) ::signal(signal, SIG_IGN);
 }
 
 void call_thread(std::uint64_t thread) { signal_thread(thread, SIGUSR1); }

@@ -15,8 +15,8 @@ enum class Signal : std::uint8_t {
 };
 
 /// From here on SIGINT, SIGTERM and SIGHUP, and calls of call_thread(), are kept until wait_for_signal() returns them,
-/// in every thread that starts later too. A pipe that closes and a file that may not grow are errors of the call alone.
-/// [main]
+/// in every thread that starts later too. A pipe that closes and a file that may not grow are errors of the call alone;
+/// signals of timers and terminals have no effect. [main]
 void block_signals();
 /// The next of these signals, or none within the limit. [any]
 Signal wait_for_signal(std::chrono::nanoseconds limit);

@@ -2,8 +2,22 @@
 #pragma once
 
 #include <cstdint>
+#include <system_error>
+#include <thread>
+#include <utility>
 
 namespace limber::system {
+
+/// Starts a thread; false: the system has none left, or no memory for its stack. [any]
+template <class Run>
+bool start_thread(std::thread& thread, Run&& run) {
+  try {
+    thread = std::thread(std::forward<Run>(run));
+  } catch (const std::system_error&) {
+    return false;
+  }
+  return true;
+}
 
 /// The name that debuggers and process lists show, at most 15 bytes. [any]
 void name_this_thread(const char* name);
