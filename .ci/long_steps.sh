@@ -90,3 +90,14 @@ long_lua_difference() {
 }
 # --long math: the math functions against MPFR, ten million arguments of each and every float
 long_math() { tests_at_length 'LongMath*'; }
+# --long environment: a show among full disks, hung displays, floods and so on; writes docs/environments.md
+long_environment() {
+  configure release build
+  build build limber || return
+  if tests/environment/run build/limber --page docs/environments.md >build/check/environment.log 2>&1; then
+    pass
+  else
+    fail "environment: $(grep -c '^FAIL' build/check/environment.log) rows differ: build/check/environment.log"
+  fi
+  say "$(tail -n 1 build/check/environment.log)"
+}

@@ -10,8 +10,8 @@
 namespace limber {
 
 namespace {
-constexpr auto kLook = std::chrono::milliseconds(50);
-constexpr int kMostLooks = 20;
+constexpr auto kFrameLook = std::chrono::milliseconds(50);
+constexpr int kFrameLooks = 20;
 }  // namespace
 
 FrameWatch::~FrameWatch() {
@@ -28,9 +28,9 @@ void FrameWatch::start(std::function<void()> end) {
 void FrameWatch::watch() {
   system::name_this_thread("limber-frames");
   for (int looks = 0; !done_.load();) {
-    std::this_thread::sleep_for(kLook);
+    std::this_thread::sleep_for(kFrameLook);
     looks = ending_.load() || system::end_is_pending() ? looks + 1 : 0;
-    if (looks < kMostLooks || !turn_.try_lock()) continue;
+    if (looks < kFrameLooks || !turn_.try_lock()) continue;
     // the main thread stays where it is, since this one keeps the turn
     if (!done_.load()) end_();
     turn_.unlock();

@@ -38,7 +38,7 @@ void append(PresetList& list, const PresetList& more) {
 int preset_command(const PresetCommand& command) {
   const Result<std::string> text = system::read_file(command.file, kMostBytes);
   if (!text)
-    return fail(kInput, fmt::format("{}: {}; in Max, pattrstorage writes such a file by the message writejson",
+    return fail(kInput, fmt::format("{}: {}; in Max, pattrstorage writes one by the message writejson",
                                     printable(command.file), text.error()));
   const Result<PresetsRead> imported = import_pattrstorage(*text);
   if (!imported) return fail(kInput, fmt::format("{}: {}", command.file, imported.error()));

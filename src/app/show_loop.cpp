@@ -110,7 +110,8 @@ void ShowLoop::retry() {
 bool ShowLoop::run() {
   while (!show_.over()) {
     retry();
-    const WindowShow::End end = window_ != nullptr ? frames_.call([&] { return window_->frame(); }) : WindowShow::End::none;
+    const WindowShow::End end =
+        window_ != nullptr ? frames_.call([&] { return window_->frame(); }) : WindowShow::End::none;
     if (end == WindowShow::End::lost) return run_headless();
     const bool closed = end == WindowShow::End::closed;
     const Signal heard = system::wait_for_signal(window_ != nullptr ? 0ms : kStatusEvery);

@@ -176,6 +176,15 @@ TEST(Output, AResultThatDoesNotFitIsAnError) {
   }
 }
 
+TEST(Output, ADeviceInThePlaceOfAFileIsWrittenOrRefused) {
+  const Ran full = run_redirected(">/dev/full", {"annotate", "/dev/stdout"});
+  EXPECT_EQ(full.code, 3);
+  EXPECT_NE(full.err.find("/dev/stdout can't be written"), std::string::npos) << full.err;
+  const Ran endless = run({"preset", "import", "/dev/zero"});
+  EXPECT_EQ(endless.code, 1);
+  EXPECT_NE(endless.err.find("/dev/zero: it is a folder or a device, not a file"), std::string::npos) << endless.err;
+}
+
 TEST(Output, AReaderThatHasEnoughEndsACommandQuietly) {
   for (const char* command : {"describe", "describe --markdown", "man", "annotate"}) {
     const std::string line = fmt::format("(\"$0\" {}; echo \"code $?\" >&2) | head -1", command);

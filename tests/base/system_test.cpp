@@ -53,6 +53,21 @@ bool readable(int fd, std::chrono::nanoseconds limit = {}) {
   return wait_ready({&waiting, 1}, limit);
 }
 
+TEST(File, ReadsRegularFilesOfALimitedSizeOnly) {
+  const Folder folder;
+  std::ofstream(folder.file("text"), std::ios::binary) << std::string("12\0\n45", 6);
+  const Result<std::string> whole = read_file(folder.file("text"), 6);
+  ASSERT_TRUE(whole.ok()) << whole.error();
+  EXPECT_EQ(*whole, std::string("12\0\n45", 6));
+  EXPECT_EQ(read_file(folder.file("text"), 5).error(), "it has 6 bytes; at most 5 are read");
+  const char* const none = "it is a folder or a device, not a file";
+  EXPECT_EQ(read_file(folder.path.string(), 5).error(), none);
+  EXPECT_EQ(read_file("/dev/zero", 5).error(), none);
+  ASSERT_EQ(mkfifo(folder.file("pipe").c_str(), 0600), 0);
+  EXPECT_EQ(read_file(folder.file("pipe"), 5).error(), none) << "nobody writes to it";
+  EXPECT_EQ(read_file(folder.file("missing"), 5).error(), "No such file or directory");
+}
+
 TEST(Wake, IsReadableFromNotifyToClear) {
   Wake wake;
   EXPECT_FALSE(readable(wake.fd()));

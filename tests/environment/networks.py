@@ -111,7 +111,7 @@ def panic(place):
     return "panicked; " + place.replays()
 
 
-@row(GROUP, "its OSC port is taken", "exit code 3, and which program may have it")
+@row(GROUP, "its OSC port is taken", "exit code 3 and a message")
 def taken(place):
     other = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
     other.bind(("127.0.0.1", 0))
@@ -119,7 +119,7 @@ def taken(place):
                        "--query", "off", "--ticks", "5")
     code = show.end()
     other.close()
-    expect(code == 3 and "port" in show.err, f"exit code {code}: {show.err[-300:]}")
+    expect(code == 3 and "already in use" in show.err, f"exit code {code}: {show.err[-300:]}")
     return f"exit code 3; \"{place.short(show.err.strip().splitlines()[-1])}\""
 
 
@@ -130,7 +130,7 @@ def taken_optional(place):
     place.later(other.close)
     show = place.start("play", place.scene, "--headless", "--osc-in", f"127.0.0.1:{other.getsockname()[1]}", "--osc-out", "off",
                        "--query", "off", "--ticks", "150", "--hash", "--osc-optional")
-    return place.whole(show, take=False, says="port")
+    return place.whole(show, take=False, says="already in use")
 
 
 @row(GROUP, "the receiver of its streams does not exist", "the same hash")

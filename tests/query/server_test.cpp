@@ -278,6 +278,14 @@ TEST(QueryServer, OneAddressDoesNotTakeAllSeats) {
   EXPECT_EQ(stage.client().get("/scene/wind?VALUE").status, 200);
 }
 
+TEST(QueryServer, ConnectionsThatAreTurnedAwayTakeNoSeats) {
+  const ServerStage stage;
+  std::vector<WebClient> greedy;
+  greedy.reserve(300);
+  for (int i = 0; i < 300; i++) greedy.emplace_back(stage.server.port(), 0, 2);
+  EXPECT_EQ(stage.client().get("/scene/wind?VALUE").status, 200);
+}
+
 TEST(QueryServer, AnEngineThatDoesNotTickHoldsUpNobody) {
   const ServerStage stage(false);
   WebClient client = stage.client();
