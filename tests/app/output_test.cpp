@@ -217,7 +217,8 @@ TEST(Output, ABatchThatWaitsForAReaderEndsAtASignal) {
 }
 
 TEST(Output, RefusalsOfTheCommandLineComeWholeAndInOrder) {
-  const Ran ran = run({"play", "--fast", "--set", "no equals sign", LIMBER_SOURCE_DIR "/scripts/arms.lua"});
+  const Ran ran =
+      run({"play", "--fast", "--set", "no equals sign", std::string(LIMBER_SOURCE_DIR) + "/scripts/arms.lua"});
   EXPECT_EQ(ran.code, 2);
   const std::size_t head = ran.err.find("limber 0"), fault = ran.err.find("limber: --set 'no equals sign'");
   EXPECT_LT(head, fault);
