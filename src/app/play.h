@@ -36,7 +36,7 @@ struct PlayOptions {
   std::string osc_allow;
   std::vector<std::string> osc_out;
   bool osc_optional = false;
-  std::string query;             ///< Empty: not given.
+  std::string query;  ///< Empty: not given.
   std::vector<std::string> query_names;
   bool recover = false;          ///< Begin with what a run that did not end well has left.
   std::string record;            ///< A take goes there.
