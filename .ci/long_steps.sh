@@ -101,3 +101,12 @@ long_environment() {
   fi
   say "$(tail -n 1 build/check/environment.log)"
 }
+# --long show_soak: 45 minutes with everything at once: saves, floods, rewinds, takes, killed clients, a full disk
+long_show_soak() {
+  configure release build
+  build build limber || return
+  if tests/environment/soak build/limber 45 >build/check/show_soak.log 2>&1; then pass; else
+    fail "the soak: $(tail -n 1 build/check/show_soak.log)"
+  fi
+  say "$(tail -n 1 build/check/show_soak.log)"
+}

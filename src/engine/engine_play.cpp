@@ -54,6 +54,7 @@ Result<void> Engine::begin_replay(std::unique_ptr<TakePlayer> player, const std:
   if (!begun) return begun;
   take_tick(false);
   publish();
+  if (begin.reset) end_pass(false);  // a rewind goes back to there, as it did when the take was recorded in a show
   return begun;
 }
 

@@ -108,6 +108,30 @@ TEST(Take, BeginsInTheMiddleOfAShowWithAReset) {
   expect_replay(folder.path("takes/middle.take"), hash);
 }
 
+TEST(Take, GoesBackToItsBeginningInARunningShow) {
+  const ShowFolder folder;
+  lay_out(folder);
+  std::uint64_t hash = 0;
+  {
+    log_to_stderr(false);
+    Show show(taken_options(folder));
+    show.ticks(50);
+    show.send("/take/record", "back");
+    show.ticks(1);
+    show.send("/push", 0.5);
+    show.ticks(10);
+    show.send("/transport/rewind", 5.0);
+    show.ticks(1);
+    EXPECT_EQ(show.engine.world().tick(), 1u) << "back to the beginning, and a tick";
+    show.ticks(20);
+    show.send("/take/stop");
+    show.ticks(1);
+    hash = show.engine.state_hash();
+    show.engine.finish_saving();
+  }
+  expect_replay(folder.path("takes/back.take"), hash);
+}
+
 // a hand's step must not hold what a stopped call had set: a replay does not make that call
 TEST(Take, WhatAStoppedCallHadSetIsNoStepOfItsHand) {
   const ShowFolder folder;

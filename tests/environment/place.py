@@ -77,6 +77,16 @@ def until(what, holds, patience=PATIENCE):
     raise Unexpected(f"it never came: {what}")
 
 
+def program_for_all(given):
+    """A copy that every user can run."""
+    folder = pathlib.Path(tempfile.mkdtemp(prefix="limber_program_"))
+    folder.chmod(0o755)
+    copy = folder / "limber"
+    shutil.copy(given, copy)
+    copy.chmod(0o755)
+    return copy
+
+
 class Stopped:
     """A terminal whose output is stopped, as by Ctrl+S."""
 
