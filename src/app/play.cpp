@@ -174,77 +174,102 @@ class PanicSignal {
   static inline std::atomic<EngineLink*> link_here{nullptr};
 };
 
-int play_scene(const PlayOptions& options, EngineOptions engine_options, const OscOptions& osc,
-               const QueryWish& query_wish) {
-  EngineLink link;
-  const PanicSignal panic_signal(link);
-  ServiceNotifier notifier;
-  engine_options.on_turn = [&notifier] { notifier.turn(); };
-  const std::string scene_file = engine_options.scene;
-  Engine engine(link, std::move(engine_options));
-  Network network(link, osc, live_offsets());
-  ConsoleServer console(link, {.folder = "", .scene = printable(options.scene)});
-  std::optional<SceneWatch> scene_watch;
-  if ((!options.fast || options.watch) && options.replay.empty()) scene_watch.emplace(link, engine, scene_file);
-  QueryServer query(link, query_doors(network, osc.allow, options.query_names));
-  const auto close = [&](bool ended) {
-    notifier.stopping();
+// a show with all that surrounds it, from its scene's run to its end
+class Playing {
+ public:
+  Playing(const PlayOptions& options, EngineOptions engine_options, const OscOptions& osc, const QueryWish& query_wish)
+      : options_(options),
+        osc_(osc),
+        query_wish_(query_wish),
+        scene_file_(engine_options.scene),
+        engine_(link_, with_notifier(std::move(engine_options))),
+        network_(link_, osc, live_offsets()),
+        console_(link_, {.folder = "", .scene = printable(options.scene)}),
+        query_(link_, query_doors(network_, osc.allow, options.query_names)) {
+    if ((!options.fast || options.watch) && options.replay.empty()) scene_watch_.emplace(link_, engine_, scene_file_);
+  }
+
+  /// The exit code.
+  int play() {
+    bool interrupted = false;
     {
-      Ending ending([&] { end_program(finish(options, engine, ended)); });
-      engine.finish_saving();
-      engine.end_recovery();
-      ending.files_are_whole();
-      scene_watch.reset();
-      query.stop();
-      network.stop();
-      console.stop();
+      Show show(engine_);
+      FrameWatch frames;
+      ShowLoop loop(show, engine_, link_, notifier_, frames, options_);
+      if (const std::optional<int> failed = start(show, loop)) return *failed;
+      const auto end_without_window = [&](const char* why) {
+        log_error("{}", why);
+        const bool ended = interrupted || loop.run_headless();
+        show.end();
+        end_program(close(ended));
+      };
+      frames.start([&] { end_without_window("the display does not answer"); });
+      const bool waits = loop.open_window();
+      if (!show.result() && !waits) return give_up(show.fault(), show.result().error());
+      show.go(waits);
+      if (scene_watch_) scene_watch_->start();
+      if (!show.result()) log_error("{}\nthe stage is empty and waits for the mended file", show.result().error());
+      // where Xlib ends the program when the display goes, the show goes on in its place, and the program ends with it
+      Window::on_display_lost([&] { end_without_window("the display is lost; playing on headless"); });
+      interrupted = loop.run();
+      Window::on_display_lost({});
+      frames.ending();
+      loop.close_window();
     }
-    return finish(options, engine, ended);
-  };
-  const auto give_up = [&](int code, const std::string& why) {
-    engine.end_recovery();
-    return fail(code, why);
-  };
-  bool interrupted = false;
-  {
-    Show show(engine);
-    FrameWatch frames;
-    ShowLoop loop(show, engine, link, notifier, frames, options);
+    return close(interrupted);
+  }
+
+ private:
+  EngineOptions with_notifier(EngineOptions options) {
+    options.on_turn = [this] { notifier_.turn(); };
+    return options;
+  }
+  // the scene's run, then the ports; the exit code when the show can't be played
+  std::optional<int> start(const Show& show, ShowLoop& loop) {
     loop.wait_for_scene();
     if (!show.result() && !loop.may_wait_for_mending()) return give_up(show.fault(), show.result().error());
-    const std::optional<ListenAddress> at = query_address(query_wish, effective_plan(osc, link.osc_plan.read().get()));
-    if (const Result<void> open = open_ports(osc, at, network, query); !open) return give_up(kMachine, open.error());
-    if (!options.fast) open_console(console);
-    const auto end_without_window = [&] {
-      const bool ended = interrupted || loop.run_headless();
-      show.end();
-      end_program(close(ended));
-    };
-    frames.start([&] {
-      log_error("the display does not answer");
-      end_without_window();
+    const std::optional<ListenAddress> at =
+        query_address(query_wish_, effective_plan(osc_, link_.osc_plan.read().get()));
+    if (const Result<void> open = open_ports(osc_, at, network_, query_); !open) return give_up(kMachine, open.error());
+    if (!options_.fast) open_console(console_);
+    loop.each_second([this, at] {
+      open_query_again(at, query_);
+      if (!options_.fast) open_console(console_, true);
     });
-    const bool waits = loop.open_window();
-    if (!show.result() && !waits) return give_up(show.fault(), show.result().error());
-    show.go(waits);
-    if (scene_watch) scene_watch->start();
-    if (!show.result()) log_error("{}\nthe stage is empty and waits for the mended file", show.result().error());
-    // where Xlib ends the program when the display goes, the show goes on in its place, and the program ends with that
-    Window::on_display_lost([&] {
-      log_error("the display is lost; playing on headless");
-      end_without_window();
-    });
-    loop.each_second([&] {
-      open_query_again(at, query);
-      if (!options.fast) open_console(console, true);
-    });
-    interrupted = loop.run();
-    Window::on_display_lost({});
-    frames.ending();
-    loop.close_window();
+    return std::nullopt;
   }
-  return close(interrupted);
-}
+  int give_up(int code, const std::string& why) {
+    engine_.end_recovery();
+    return fail(code, why);
+  }
+  int close(bool ended) {
+    notifier_.stopping();
+    {
+      Ending ending([&] { end_program(finish(options_, engine_, ended)); });
+      engine_.finish_saving();
+      engine_.end_recovery();
+      ending.files_are_whole();
+      scene_watch_.reset();
+      query_.stop();
+      network_.stop();
+      console_.stop();
+    }
+    return finish(options_, engine_, ended);
+  }
+
+  const PlayOptions& options_;
+  const OscOptions& osc_;
+  const QueryWish& query_wish_;
+  const std::string scene_file_;
+  EngineLink link_;
+  const PanicSignal panic_signal_{link_};
+  ServiceNotifier notifier_;
+  Engine engine_;
+  Network network_;
+  ConsoleServer console_;
+  std::optional<SceneWatch> scene_watch_;
+  QueryServer query_;
+};
 
 // what was asked for and has no meaning for stills and films
 std::string left_aside(const PlayOptions& options) {
@@ -318,7 +343,7 @@ int play_command(const PlayOptions& options) {
   if (!engine_options) return fail(kUsage, engine_options.error());
   if (scene.empty()) return fail(kInput, no_scene(options.scene, looked));
   if (options.picture.offline()) return render_scene(options, std::move(*engine_options));
-  return play_scene(options, std::move(*engine_options), *osc, *query);
+  return std::make_unique<Playing>(options, std::move(*engine_options), *osc, *query)->play();
 }
 
 }  // namespace limber

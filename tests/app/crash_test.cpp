@@ -21,6 +21,16 @@ struct Stopped {
     client.send({0x7f000001, static_cast<std::uint16_t>(std::stoi(running.behind("OSC in 127.0.0.1:")))},
                 {bytes.data(), bytes.size()});
   }
+  /// Waits for an answer of that address.
+  bool answered(const std::string& address) const {
+    while (const auto bytes = client.receive()) {
+      const Result<Decoded> decoded = decode_packet(bytes->data(), bytes->size());
+      for (const Message& message : decoded->messages) {
+        if (message.address == address) return true;
+      }
+    }
+    return false;
+  }
   std::size_t kept() const {
     std::size_t count = 0;
     for (const auto& entry : std::filesystem::directory_iterator(folder.path() + "/state/limber/recovery"))
@@ -35,11 +45,11 @@ TEST(Crash, SignalsEndTheShowWithAllFilesWhole) {
     Running running(show.words());
     ASSERT_TRUE(running.wait_for("playing headless")) << running.err();
     show.send(running, {"/take/record", {Arg::of("last")}});
-    ASSERT_TRUE(show.client.receive());
+    ASSERT_TRUE(show.answered("/take/recording"));
     show.send(running, {"/scene/mark", {Arg::of(7.0)}});
     show.send(running, {"/preset/store", {Arg::of("last")}});
     show.send(running, {"/get", {Arg::of("/scene/mark")}});
-    ASSERT_TRUE(show.client.receive());
+    ASSERT_TRUE(show.answered("/scene/mark"));
     running.signal(signal);
     const Ran ran = running.finish();
     EXPECT_EQ(ran.code, 0) << ran.err;
