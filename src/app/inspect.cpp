@@ -10,6 +10,7 @@
 #include <nlohmann/json.hpp>
 
 #include "app/exit_code.h"
+#include "base/output.h"
 #include "base/text.h"
 #include "model/urdf_import.h"
 

@@ -9,6 +9,8 @@
 #include <deque>
 #include <thread>
 
+#include <fmt/format.h>
+
 #include "base/random.h"
 #include "base/text.h"
 
