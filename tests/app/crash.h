@@ -195,6 +195,7 @@ class CrashRound {
 inline void crash(int rounds, int at_once) {
   std::atomic<int> next{0};
   std::vector<std::thread> threads;
+  threads.reserve(static_cast<std::size_t>(at_once));
   for (int i = 0; i < at_once; i++) {
     threads.emplace_back([&] {
       for (int n = next.fetch_add(1); n < rounds; n = next.fetch_add(1)) {

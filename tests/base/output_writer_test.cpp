@@ -286,6 +286,7 @@ TEST(OutputWriter, WaitingLosesNothing) {
     OutputWriter writer(one(stream(device, full)), 256 << 10, 8);
     ASSERT_TRUE(writer.start());
     std::vector<std::thread> threads;
+    threads.reserve(3);
     for (int t = 0; t < 3; t++) {
       threads.emplace_back([&, t] {
         for (int i = 0; i < 300; i++) writer.write(0, fmt::format("{} {}\n", t, i));
