@@ -13,8 +13,9 @@ constexpr std::size_t kMostWishes = 256;  // of scripts, in a tick
 
 Presets::Book Engine::read_presets(const std::string& scene) {
   PresetFile::Owner owner = PresetFile::owner_of(scene, options_.locks, !options_.recovery.empty());
+  // called by the thread that writes the file: not through push_out, which reads what the simulation thread changes
   return Presets::read(scene, std::move(owner), [this](const std::string& why) {
-    push_out({Outgoing::To::error, {}, error_message("/preset/store", why)});
+    link_.push_out({Outgoing::To::error, {}, error_message("/preset/store", why)});
   });
 }
 
