@@ -1,31 +1,12 @@
 # shellcheck shell=bash disable=SC2046,SC2086,SC2154
-# ./check --faults: each small fault in tests/faults is applied to a copy of the tree; the tests must turn red.
-# The copy is the last commit; the patches are those of the working tree, so that a new one can be tried.
+# ./check --faults: plants the mutations of tests/mutations in a copy of the last commit; tests must fail for each.
+# All mutations of C++ functions are in one build, and the environment variable LIMBER_MUTATION chooses one.
 
 copy=build/faults/tree
 table=build/check/faults.txt
+list=build/check/mutations.tsv
 
-# fault_line FILE WORD: what the patch's head says after "# WORD:"
-fault_line() { sed -n '/^diff /q; /^--- /q; s/^# '"$2"': *//p' "$1"; }
-
-# the copy stands at the last commit again, and only files that differ get a new time, so builds stay incremental
-renew_copy() {
-  local head
-  head=$(git rev-parse HEAD)
-  [ -z "$(git status --porcelain --untracked-files=no -- src tests CMakeLists.txt)" ] ||
-    say "uncommitted changes are not part of the copy: the faults meet the last commit"
-  if [ ! -e "$copy/.git" ]; then
-    rm -rf build/faults && git worktree prune && mkdir -p build/faults
-    git worktree add -q --detach "$copy" "$head" || refuse 3 "git cannot make a second working tree in $copy." \
-      "work in a clone made by git clone, with free space on the disk."
-  fi
-  git -C "$copy" reset -q --hard "$head" && git -C "$copy" clean -qfd
-  # tests look for extra data beside the checkout, so it is beside the copy as well
-  [ ! -e ../shared ] || ln -sfn "$(realpath ../shared)" build/faults/shared
-}
-
-# fault_build KIND TARGET...: KIND is plain, asan or tsan; optimised like the sanitizers' builds, which compile faster;
-# within the copy, where the program finds its data
+# fault_build KIND TARGET...: KIND is plain, asan or tsan
 fault_build() {
   local kind=$1 folder=$PWD/$copy/build/$1 options=()
   shift
@@ -34,29 +15,31 @@ fault_build() {
     tsan) options=(-DLIMBER_SANITIZE=thread) ;;
   esac
   if [ ! -e "$folder/build.ninja" ]; then
-    cmake -S "$copy" -B "$folder" -G Ninja -DCMAKE_BUILD_TYPE=Sanitize "${options[@]}" || return
+    cmake -S "$copy" -B "$folder" -G Ninja -DCMAKE_BUILD_TYPE=Sanitize -DLIMBER_TESTS=ON -DLIMBER_UNITY=ON "${options[@]}" || return
   fi
   cmake --build "$folder" -j "$(jobs)" --target "$@"
 }
 
-# words "kind:target" of an expect line: "test_sim tsan:test_base" gives "plain:test_sim tsan:test_base";
-# "valgrind:joints" is a scene of tests/memory
-expected() { local word; for word in $(fault_line "$1" expect); do case $word in *:*) echo "$word" ;; *) echo "plain:$word" ;; esac; done; }
+# kind_and_program WORD: "test_sim" gives "plain:test_sim", "tsan:test_base" itself
+kind_and_program() { case $1 in *:*) echo "$1" ;; *) echo "plain:$1" ;; esac; }
 
-# each kind once, with its targets behind it
-build_expected() {
+# programs: all "kind:program" of the list, each once
+programs() { local word; for word in $(cut -f3 "$list" | tr ';' '\n' | cut -d'|' -f1 | sort -u); do kind_and_program "$word"; done; }
+
+# build_all: builds the programs of the list
+build_all() {
   local kind rc=0
-  for kind in $(cut -d: -f1 <<<"$1" | sort -u); do
+  for kind in $(programs | cut -d: -f1 | sort -u); do
     case $kind in
       valgrind) fault_build plain limber || rc=1 ;;
-      *) fault_build "$kind" $(sed -n "s/^$kind://p" <<<"$1" | sort -u) || rc=1 ;;
+      *) fault_build "$kind" $(programs | sed -n "s/^$kind://p") || rc=1 ;;
     esac
   done
   return $rc
 }
 
-# green WORD FILTER: runs that test program until its first failure, or plays that scene under valgrind
-green() {
+# passes KIND:PROGRAM FILTER: runs it until its first failure; "valgrind:joints" plays that scene of tests/memory
+passes() {
   local name=${1#*:}
   case $1 in valgrind:*)
     program=$copy/build/plain/limber memcheck_scene 12 $(memory_scenes | grep "^$name ")
@@ -68,54 +51,63 @@ green() {
     --gtest_color=no --gtest_fail_fast --gtest_filter="${2:-*}"
 }
 
-row() { printf '%-34s %-9s %s\n' "$@" | tee -a "$table"; }
+verdict_line() { printf '%-40s %-9s %s\n' "$@" | tee -a "$table"; }
 
-# try_fault PATCH: red is the wanted answer
-try_fault() {
-  local patch=$1 name words word log verdict=green
-  name=$(basename "$patch" .patch)
-  log=build/check/fault_$name.log
-  words=$(expected "$patch")
-  if ! git -C "$copy" apply --recount "$PWD/$patch" >"$log" 2>&1; then
-    failed=$((failed + 1)); row "$name" "STALE" "the patch does not apply: make it again"; return
-  fi
-  if ! build_expected "$words" >>"$log" 2>&1; then
-    verdict=broken
-  else
-    for word in $words; do
-      green "$word" "$(fault_line "$patch" filter)" >>"$log" 2>&1 || { verdict=red; break; }
-    done
-  fi
-  git -C "$copy" apply -R --recount "$PWD/$patch"
-  case $verdict in
-    red) pass; row "$name" red "$word: $(grep -m1 -oE 'FAILED  \] [A-Za-z0-9_./]+|SUMMARY: .*|timed out|uninitialised value' "$log" | sed 's/FAILED  \] //' || true)" ;;
-    green) failed=$((failed + 1)); row "$name" GREEN "no test noticed: $(fault_line "$patch" fault)" ;;
-    broken) failed=$((failed + 1)); row "$name" BROKEN "it does not compile, so it proves nothing ($log)" ;;
-  esac
+# first_failure LOG: the test that noticed
+first_failure() {
+  grep -m1 -oE 'FAILED  \] [A-Za-z0-9_./]+|SUMMARY: .*|uninitialised value' "$1" | sed 's/FAILED  \] //' || echo "ended or timed out"
 }
 
-# faults NAME...: all, or those whose names start with one of these
+# try_mutation NAME TESTS FAULT: tests that pass mean that none notices it
+try_mutation() {
+  local name=$1 fault=$3 log=build/check/fault_$1.log test word filter
+  : >"$log"
+  while IFS='|' read -r word filter; do
+    if ! LIMBER_MUTATION=$name passes "$(kind_and_program "$word")" "$filter" >>"$log" 2>&1; then
+      verdict_line "$name" noticed "$word: $(first_failure "$log")"
+      return
+    fi
+  done < <(tr ';' '\n' <<<"$2")
+  verdict_line "$name" SURVIVED "no test noticed: $fault"
+}
+
+# try_alone NAME TESTS FAULT NAMES...: a mutation of a file that is no C++, built and tried by itself
+try_alone() {
+  local name=$1 tests=$2 fault=$3
+  shift 3
+  python3 tests/mutations/plant.py --folder "$copy" --alone "$name" -- "$@"
+  if build_all >"build/check/fault_$name.log" 2>&1; then
+    try_mutation "$name" "$tests" "$fault"
+  else
+    verdict_line "$name" BROKEN "it does not build: build/check/fault_$name.log"
+  fi
+}
+
+# faults NAME...: all mutations, or those whose names start with one of these
 faults() {
-  local patches=() patch name words word log=build/check/fault_baseline.log
+  local word log=build/check/fault_baseline.log name how tests fault begin=$SECONDS
   sanitizer_options
   : >"$table"
-  for name in "${@:-}"; do
-    for patch in tests/faults/"$name"*.patch; do [ -e "$patch" ] && patches+=("$patch"); done
+  [ -z "$(git status --porcelain --untracked-files=no -- src tests CMakeLists.txt)" ] ||
+    say "uncommitted changes to sources are not part of the copy: mutations are planted in the last commit"
+  mkdir -p "$copy"
+  # tests look for extra data beside the checkout, so it is beside the copy as well
+  [ ! -e ../shared ] || ln -sfn "$(realpath ../shared)" build/faults/shared
+  python3 tests/mutations/plant.py --folder "$copy" --table "$list" -- "$@" || refuse 2 "the mutations can't be planted" \
+    "see above; 'python3 tests/mutations/plant.py' checks all entries."
+  say "building $(programs | tr '\n' ' ')with $(wc -l <"$list") mutations"
+  build_all >"$log" 2>&1 || { fail "the build with all mutations" "$log"; return; }
+  say "built in $((SECONDS - begin)) s"
+  # without a mutation all pass, or a failure would prove nothing
+  for word in $(programs); do
+    passes "$word" >>"$log" 2>&1 || { fail "$word fails without a mutation" "$log"; return; }
   done
-  [ ${#patches[@]} != 0 ] || refuse 2 "no fault's name starts with '${*:-}'." "ls tests/faults shows them."
-  for patch in "${patches[@]}"; do
-    [ -n "$(fault_line "$patch" expect)" ] ||
-      refuse 2 "$patch does not say which tests it should turn red." "its first line is like: # expect: test_sim"
-  done
-  renew_copy
-  # without the faults all is green, or red would mean nothing
-  words=$(for patch in "${patches[@]}"; do expected "$patch"; done | sort -u)
-  say "building the tests without a fault: $(tr '\n' ' ' <<<"$words")"
-  build_expected "$words" >"$log" 2>&1 || { fail "the build without a fault" "$log"; return; }
-  for word in $words; do
-    green "$word" >>"$log" 2>&1 || { fail "$word is red without a fault" "$log"; return; }
-  done
-  row fault verdict "by"
-  for patch in "${patches[@]}"; do try_fault "$patch"; done
-  say "the table is in $table"
+  say "tests without a mutation pass, $((SECONDS - begin)) s"
+  verdict_line mutation verdict by
+  while IFS=$'\t' read -r name how tests fault; do
+    if [ "$how" = alone ]; then try_alone "$name" "$tests" "$fault" "$@" </dev/null; else try_mutation "$name" "$tests" "$fault" </dev/null; fi
+  done <"$list"
+  say "the whole run took $((SECONDS - begin)) s; the table is in $table"
+  pass "$(grep -c ' noticed ' "$table")"
+  failed=$((failed + $(grep -cE ' (SURVIVED|BROKEN) ' "$table")))
 }
