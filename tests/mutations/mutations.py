@@ -120,6 +120,12 @@ inline bool limber_mutation(const char* name) {
 """
 
 
+def condition(name):
+    """A C++ expression that is true if the mutation is chosen; false in constant expressions."""
+    call = f'[] {{ static const bool on = limber_mutation("{name}"); return on; }}()'
+    return f"!__builtin_is_constant_evaluated() && {call}"
+
+
 def plant(sources, mutations):
     """Gives each function with mutations a body for each of them, and returns {path: text}.
 
@@ -134,7 +140,7 @@ def plant(sources, mutations):
         text = changed.get(path, sources.text[path])
         begin, end = sources.tokens[path][opening].begin, sources.tokens[path][closing].end
         switch = "".join(
-            f'if ([] {{ static const bool on = limber_mutation("{name}"); return on; }}()) {body} else '
+            f"if ({condition(name)}) {body} else "
             for name, body in variants
         )
         changed[path] = f"{text[:begin]}{{ {switch}{text[begin:end]} }}{text[end:]}"

@@ -82,9 +82,7 @@ class Planted:
         places = []
         for functions in sources.functions.values():
             for path, function in functions:
-                head = [token.text for token in sources.tokens[path][function.head : function.opening]]
-                if "constexpr" not in head:
-                    places += [(path, function, c) for c in changes_of(texts[path], sources.tokens[path], function)]
+                places += [(path, function, c) for c in changes_of(texts[path], sources.tokens[path], function)]
         self.sources = sources
         self.chosen = dict(enumerate(random.Random(seed).sample(places, min(count, len(places)))))
 
@@ -108,8 +106,8 @@ class Planted:
             pieces.append((opening, "{ ", None))
             for number, (begin, end, by, _) in variants:
                 body = text[opening:begin] + by + text[end:closing]
-                switch = f'if ([] {{ static const bool on = limber_mutation("random_{number}"); return on; }}()) {body}\nelse '
-                pieces.append((opening, switch, number))
+                condition = mutations.condition(f"random_{number}")
+                pieces.append((opening, f"if ({condition}) {body}\nelse ", number))
             pieces.append((closing, " }", None))
         ranges = {}
         for path, pieces in inserted.items():
